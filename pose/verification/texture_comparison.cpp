@@ -8,26 +8,19 @@
 
 #include "pipeline/geometry/renderer.hpp"
 #include "pose/model/symmetry.hpp"
-#include "pose/registration/registration.hpp"
 #include "pose/seen/depth_score.hpp"
-#include "pose/seen/foreground_evidence.hpp"
-#include "pose/seen/handle_observation.hpp"
+#include "pose/verification/equivalent_poses.hpp"
 
 namespace houghstream {
 namespace {
 
 // The numbers below are chosen by what they mean, not fitted; what the result is worth is learnt (TextureSettings).
-constexpr int kCells = 48;     // number of cells along the longer side of the object in the image
 constexpr int kMinCells = 60;  // minimum number of compared cells that is informative
 constexpr int kFine = 5;       // sides of the box filters that separate the bands, cells
 constexpr int kCoarse = 13;
-// Number of compared cells that count as one observation, since neighbours are correlated. All cells share one image,
-// one mesh and one pose, so that even these observations are dependent: kTempering reduces their weight for that.
-constexpr double kFineCells = 4.0;
+// Number of compared cells of the coarser bands that count as one observation.
 constexpr double kMiddleCells = 25.0;
 constexpr double kCoarseCells = 85.0;
-constexpr double kTempering = 0.3;
-constexpr double kLogRatio = 2.0;        // log likelihood ratio of one observation of silhouette or handle that is sure
 constexpr double kNoise = 8.0;           // variance of a channel without texture and shading, 8-bit CIE L*a*b*
 constexpr double kBlur_px = 1.0;         // standard deviation of a camera's blur, by its lens and its mosaic of colours
 constexpr double kMinTextureGain = 0.3;  // at the model's exposure
@@ -41,8 +34,9 @@ struct Band {
 };
 
 constexpr std::size_t kBands = 8;  // fine L a b, middle L a b, coarse a b
-constexpr std::array<double, kBands> kCellsPerObservation = {kFineCells,   kFineCells,   kFineCells,   kMiddleCells,
-                                                             kMiddleCells, kMiddleCells, kCoarseCells, kCoarseCells};
+constexpr std::array<double, kBands> kCellsPerObservation = {kObservationCells, kObservationCells, kObservationCells,
+                                                             kMiddleCells,      kMiddleCells,      kMiddleCells,
+                                                             kCoarseCells,      kCoarseCells};
 
 /// The bands of an image, and its mean colour.
 struct TextureBands {
@@ -64,36 +58,15 @@ struct VisibleSurface {
   Eigen::Vector3f camera_position = Eigen::Vector3f::Zero();  ///< object frame, metres
 };
 
-/// Holds a pose that is equivalent by shape, or nearly so, and how much likelier the image is under it than under the
-/// pose with which it is compared: the logarithm of the ratio.
-struct EquivalentPose {
-  Eigen::Isometry3d T_camera_object;
-  double log_ratio = 0.0;
-};
-
-/// Holds such a pose, and the model's texture at it.
+/// Holds an equivalent pose, and the model's texture at it.
 struct Alternative {
   Eigen::Isometry3d T_camera_object;
   TextureBands texture;
-  double log_likelihood = 0.0;        ///< best_log_likelihood_ratio() of the texture
-  double silhouette_log_ratio = 0.0;  ///< EquivalentPose::log_ratio by the silhouettes alone
+  double log_likelihood = 0.0;   ///< best_log_likelihood_ratio() of the texture
+  double shape_log_ratio = 0.0;  ///< EquivalentPose::log_ratio by silhouettes or handle alone
 };
 
 // The steps of compare_with_alternatives(); they stand behind it in the order of their calls.
-std::vector<EquivalentPose> find_alternative_poses(const ObjectObservation& observation,
-                                                   const Eigen::Isometry3d& T_camera_object,
-                                                   const RenderedRegion& rendered, const DepthTolerance& tolerance,
-                                                   const RegistrationSettings& registration);
-std::vector<EquivalentPose> find_near_alternatives(const ObjectObservation& observation,
-                                                   const Eigen::Isometry3d& T_camera_object,
-                                                   const RenderedRegion& rendered, const DepthTolerance& tolerance,
-                                                   const RegistrationSettings& registration);
-void compare_silhouettes(const ObjectObservation& observation, const RenderedRegion& rendered,
-                         const DepthTolerance& tolerance, std::vector<EquivalentPose>& alternatives);
-bool stands_out(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
-                const RenderedRegion& other);
-double silhouette_log_ratio(const ForegroundEvidence& foreground, const RenderedRegion& alternative,
-                            const cv::Rect& image_px);
 TextureComparison compare_likelihoods(const std::vector<EquivalentPose>& alternatives);
 VisibleSurface find_visible_surface(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                                     const RenderedRegion& rendered, const DepthTolerance& tolerance);
@@ -130,7 +103,7 @@ std::optional<TextureComparison> compare_with_alternatives(const ObjectObservati
     return std::nullopt;
   const RenderedRegion rendered = render_depth_region(model.mesh, T_camera_object, observation.frame.camera);
   const std::vector<EquivalentPose> alternatives =
-      find_alternative_poses(observation, T_camera_object, rendered, tolerance, registration);
+      find_equivalent_poses(observation, T_camera_object, rendered, tolerance, registration);
   if (alternatives.empty()) return std::nullopt;
   if (observation.model.texture.empty() || observation.colours.lab.empty()) return compare_likelihoods(alternatives);
   const VisibleSurface surface = find_visible_surface(observation, T_camera_object, rendered, tolerance);
@@ -144,8 +117,8 @@ std::optional<TextureComparison> compare_with_alternatives(const ObjectObservati
   std::vector<EquivalentPose> compared;
   for (const Alternative& alternative :
        rank_alternatives(observation, surface, T_camera_object, alternatives, observed)) {
-    compared.push_back({alternative.T_camera_object,
-                        alternative.log_likelihood + alternative.silhouette_log_ratio - pose.log_likelihood});
+    compared.push_back(
+        {alternative.T_camera_object, alternative.log_likelihood + alternative.shape_log_ratio - pose.log_likelihood});
   }
   if (compared.empty()) return std::nullopt;
   TextureComparison comparison = compare_likelihoods(compared);
@@ -174,106 +147,6 @@ TextureComparison compare_likelihoods(const std::vector<EquivalentPose>& alterna
   return comparison;
 }
 
-/// Returns the poses that only texture and silhouette distinguish from this one: those whose depth agrees as well.
-std::vector<EquivalentPose> find_alternative_poses(const ObjectObservation& observation,
-                                                   const Eigen::Isometry3d& T_camera_object,
-                                                   const RenderedRegion& rendered, const DepthTolerance& tolerance,
-                                                   const RegistrationSettings& registration) {
-  std::vector<EquivalentPose> poses =
-      find_near_alternatives(observation, T_camera_object, rendered, tolerance, registration);
-  for (const Eigen::Isometry3d& motion : observation.model.alternatives) poses.push_back({T_camera_object * motion});
-  if (observation.model.partial_alternatives.empty()) return poses;
-  constexpr double kMinLogRatio = -5.0;  // where the handle would be in plain sight, and is not
-  const HandleObserver handle(observation, T_camera_object, rendered, tolerance);
-  const HandleObservation observed = handle.observe_at(T_camera_object);
-  if (observed.is_visible()) return poses;
-  for (const Eigen::Isometry3d& motion : observation.model.partial_alternatives) {
-    const Eigen::Isometry3d rotated = T_camera_object * motion;
-    const HandleObservation there = handle.observe_at(rotated);
-    const double log_ratio =
-        kTempering * kLogRatio / kFineCells * there.points * (there.support() - observed.support());
-    if (there.can_be_occluded() || log_ratio > kMinLogRatio) poses.push_back({rotated, log_ratio});
-  }
-  return poses;
-}
-
-/// Returns nearly equivalent poses, registered, with what their silhouettes say.
-std::vector<EquivalentPose> find_near_alternatives(const ObjectObservation& observation,
-                                                   const Eigen::Isometry3d& T_camera_object,
-                                                   const RenderedRegion& rendered, const DepthTolerance& tolerance,
-                                                   const RegistrationSettings& registration) {
-  constexpr int kPoints = 150;
-  constexpr float kMinScoreRatio = 0.8F;
-  const auto depth_score_at = [&](const Eigen::Isometry3d& pose) {
-    return score_pose(observation.frame, observation.model, pose, kPoints, tolerance).value;
-  };
-  const float score = depth_score_at(T_camera_object);
-  std::vector<EquivalentPose> poses;
-  for (const Eigen::Isometry3d& motion : observation.model.near_alternatives) {
-    const RegistrationResult moved = register_finely(
-        observation, register_rotated(observation, T_camera_object * motion, registration), registration);
-    if (moved.inliers > 0 && depth_score_at(moved.T_camera_object) >= kMinScoreRatio * score)
-      poses.push_back({moved.T_camera_object});
-  }
-  if (!poses.empty()) compare_silhouettes(observation, rendered, tolerance, poses);
-  return poses;
-}
-
-/// Sets the log ratio of each alternative to what the pixels say that the model covers at one of both poses only.
-void compare_silhouettes(const ObjectObservation& observation, const RenderedRegion& rendered,
-                         const DepthTolerance& tolerance, std::vector<EquivalentPose>& alternatives) {
-  std::vector<std::pair<EquivalentPose*, RenderedRegion>> others;
-  for (EquivalentPose& alternative : alternatives) {
-    const Eigen::Isometry3d& pose = alternative.T_camera_object;
-    if (stands_out(observation, pose, rendered))
-      others.emplace_back(&alternative, render_depth_region(observation.model.mesh, pose, observation.frame.camera));
-  }
-  if (others.empty()) return;
-  const ForegroundEvidence foreground(observation, rendered, tolerance, [&](const cv::Point& at_px) {
-    return std::any_of(others.begin(), others.end(),
-                       [&](const auto& other) { return !std::isnan(other.second.depth_at(at_px)); });
-  });
-  const cv::Rect image_px(cv::Point(), observation.frame.depth.size());
-  for (const auto& [alternative, other] : others)
-    alternative->log_ratio = silhouette_log_ratio(foreground, other, image_px);
-}
-
-/// Returns whether points of the model at a pose lie beside its silhouette at another one, rendered.
-bool stands_out(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
-                const RenderedRegion& other) {
-  constexpr int kPoints = 300;
-  constexpr double kMinFraction = 0.005;  // what rounding to pixels leaves
-  const ProjectedView projected = project_view(observation.frame, observation.model, T_camera_object, kPoints);
-  int beside = 0;
-  for (const ProjectedPoint& point : projected.points) {
-    const cv::Point at(point.x, point.y);
-    const bool is_beside = std::isnan(other.depth_at(at)) && std::isnan(other.depth_at(at + cv::Point(1, 1))) &&
-                           std::isnan(other.depth_at(at - cv::Point(1, 1)));
-    beside += is_beside ? 1 : 0;
-  }
-  return beside > kMinFraction * static_cast<double>(projected.points.size());
-}
-
-/// Returns the log likelihood ratio of an alternative to the pose at which the evidence was learnt.
-double silhouette_log_ratio(const ForegroundEvidence& foreground, const RenderedRegion& alternative,
-                            const cv::Rect& image_px) {
-  const RenderedRegion& pose = foreground.rendered();
-  const cv::Rect both = (pose.region_px | alternative.region_px) & image_px;
-  if (both.area() == 0) return 0.0;
-  double sum = 0.0;
-  for (int y = both.y; y < both.br().y; ++y) {
-    for (int x = both.x; x < both.br().x; ++x) {
-      const cv::Point at(x, y);
-      const float pose_depth = pose.depth_at(at);
-      const float alternative_depth = alternative.depth_at(at);
-      if (std::isnan(pose_depth) == std::isnan(alternative_depth)) continue;
-      sum += std::isnan(pose_depth) ? foreground.at(at, alternative_depth, true) : -foreground.at(at, pose_depth, true);
-    }
-  }
-  const double cell_px = static_cast<double>(std::max(both.width, both.height)) / kCells;
-  return kTempering * kLogRatio / kFineCells * sum / (cell_px * cell_px);
-}
-
 /// Finds the cells where the model is visible. Those of its outline are left out, since colours are registered to depth
 /// within a few pixels only.
 VisibleSurface find_visible_surface(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
@@ -281,7 +154,7 @@ VisibleSurface find_visible_surface(const ObjectObservation& observation, const 
   VisibleSurface surface;
   const cv::Rect colours(observation.colours.origin_px, observation.colours.lab.size());
   const cv::Rect part = rendered.region_px & colours;
-  surface.cell_px = std::max(1, (std::max(part.width, part.height) + kCells - 1) / kCells);
+  surface.cell_px = std::max(1, (std::max(part.width, part.height) + kObjectCells - 1) / kObjectCells);
   surface.part_px = crop_to_whole_cells(part, surface.cell_px);
   if (surface.part_px.area() == 0) return surface;
   cv::Mat inlier_cells(surface.part_px.size() / surface.cell_px, CV_8UC1, cv::Scalar(0));
@@ -475,7 +348,7 @@ double log_likelihood_ratio(const TextureBands& model, const TextureBands& obser
   const double strength =
       std::clamp(model.chroma.dot(observed.chroma) / std::max(model.chroma.squaredNorm(), 1.0), 0.5, kMaxTextureGain);
   const double chroma_deviation = std::min((observed.chroma - strength * model.chroma).norm() / kCast, kMax);
-  return kTempering * sum - 0.5 * chroma_deviation * chroma_deviation;
+  return kEvidenceTempering * sum - 0.5 * chroma_deviation * chroma_deviation;
 }
 
 /// Turns a pose about the model's axes of revolution to where its texture agrees best with the observed one, by steps
@@ -494,7 +367,7 @@ void align_about_axes(const ObjectModel& model, const VisibleSurface& surface, c
         if (!texture) continue;
         const double log_likelihood = best_log_likelihood_ratio(*texture, observed);
         if (log_likelihood > pose.log_likelihood)
-          pose = {rotated, *std::move(texture), log_likelihood, pose.silhouette_log_ratio};
+          pose = {rotated, *std::move(texture), log_likelihood, pose.shape_log_ratio};
       }
     }
   }
@@ -507,7 +380,7 @@ std::vector<Alternative> rank_alternatives(const ObjectObservation& observation,
                                            const std::vector<TextureBands>& observed) {
   constexpr std::size_t kMaxAligned = 8;
   const auto is_likelier = [](const Alternative& a, const Alternative& b) {
-    return a.log_likelihood + a.silhouette_log_ratio > b.log_likelihood + b.silhouette_log_ratio;
+    return a.log_likelihood + a.shape_log_ratio > b.log_likelihood + b.shape_log_ratio;
   };
   const Eigen::Isometry3d T_object_camera = T_camera_object.inverse();
   std::vector<Alternative> ranked;

@@ -27,12 +27,10 @@ struct TextureComparison {
 /// the exposure sets, gives a likelihood: exposure cancels with the mean, shading with the coarse lightness, a cast
 /// with the mean chroma except for the part that no camera causes. Alternatives about an axis of revolution are samples
 /// that stand farther apart than letters are wide: the likeliest of them are aligned, as the pose itself is, before
-/// they are compared. Nearly equivalent alternatives are first registered to the depth (`registration`), and to their
-/// likelihood that of the pixels is added which the model covers at one of both poses only (ForegroundEvidence), as in
-/// region-based tracking (Prisacariu and Reid 2012, "PWP3D"). To that of a turn about a nearly round shape's axis that
-/// of its handle is added (HandleObserver), unless the handle is visible at the pose: no other turn is compared then.
-/// Returns nothing where the pose has no alternatives. It follows the background-free correlation of Lewis (1995, "Fast
-/// Normalized Cross-Correlation") and the Gaussian likelihood whose maximum over gain and offset that is.
+/// they are compared. To the likelihood of an alternative that of its silhouette and its handle is added
+/// (find_equivalent_poses). Returns nothing where the pose has no alternatives. It follows the background-free
+/// correlation of Lewis (1995, "Fast Normalized Cross-Correlation") and the Gaussian likelihood whose maximum over gain
+/// and offset that is.
 std::optional<TextureComparison> compare_with_alternatives(const ObjectObservation& observation,
                                                            const Eigen::Isometry3d& T_camera_object,
                                                            const DepthTolerance& tolerance,
