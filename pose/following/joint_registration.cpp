@@ -30,6 +30,17 @@ constexpr std::array<JointLevel, 4> kLevels = {{{0.25, 2, {6, 15.0, 3}, EdgeStep
                                                 {0.7, 1, {2, 3.5, 1}, EdgeStep::kAlongGradient, 0},
                                                 {1.0, 1, {1, 2.0, 1}, EdgeStep::kAlongGradient, 0}}};
 
+/// Returns the probability that the pixel of a measured point shows the object, by its colour: a hand that grips an
+/// object lies within the distance of pairs, and would pull the pose towards itself. Nothing without colours.
+PairWeight foreground_weight(const RgbdFrame& frame, const ColourStatistics* colours) {
+  if (colours == nullptr || colours->empty()) return nullptr;
+  return [&frame, colours](const Eigen::Vector3f& measured) {
+    const Eigen::Vector2d pixel = frame.camera.project(measured.cast<double>());
+    const cv::Point at_px(cvRound(pixel.x()), cvRound(pixel.y()));
+    return std::max(kMinForeground, colours->foreground(frame.colour.at<cv::Vec3b>(at_px)));
+  };
+}
+
 /// State of one registration from its first level to its last.
 class JointRegistration {
  public:
@@ -41,7 +52,8 @@ class JointRegistration {
         settings_(settings),
         registration_(registration),
         end_m_(correspondence_distances(observation, registration).end),
-        sigma_m_(settings.depth_sigmas * observation.noise.sigma(observation.centre_camera.z())) {
+        sigma_m_(settings.depth_sigmas * observation.noise.sigma(observation.centre_camera.z())),
+        weight_(foreground_weight(observation.frame, start.appearance.colours.get())) {
     result_.silhouette = start.appearance.silhouette;
     result_.registration.T_camera_object = start.T_camera_object;
     if (is_textured()) brightness_ = make_brightness(observation.frame, observation.region.box_px);
@@ -120,8 +132,8 @@ class JointRegistration {
   /// Adds the equations of depth. Returns false where there is too little depth.
   bool add_depth(const JointLevel& level, double distance_m, MotionEquations& all) {
     const auto points = static_cast<std::size_t>(std::lround(level.points * settings_.points));
-    const CorrespondenceSums pairs = sum_correspondences(
-        observation_, depth_pose(), points, {static_cast<float>(distance_m), level.search_steps}, foreground_weight());
+    const CorrespondenceSums pairs = sum_correspondences(observation_, depth_pose(), points,
+                                                         {static_cast<float>(distance_m), level.search_steps}, weight_);
     if (pairs.count < kMinPairs) return false;
     // A level with fewer pairs weighs as much as the finest one.
     const double weight = 1.0 / (level.points * sigma_m_ * sigma_m_);
@@ -136,18 +148,6 @@ class JointRegistration {
     if (is_finest_) result_.information += build(0.0).hessian;
     add(build(registration_.point_weight), 1.0, all);
     return true;
-  }
-
-  /// Returns the probability that the pixel of a measured point shows the object, by its colour: a hand that grips an
-  /// object lies within the distance of pairs, and would pull the pose towards itself.
-  PairWeight foreground_weight() const {
-    const ColourStatistics* colours = start_.appearance.colours.get();
-    if (colours == nullptr || colours->empty()) return nullptr;
-    return [&frame = observation_.frame, colours](const Eigen::Vector3f& measured) {
-      const Eigen::Vector2d pixel = frame.camera.project(measured.cast<double>());
-      const cv::Point at_px(cvRound(pixel.x()), cvRound(pixel.y()));
-      return std::max(kMinForeground, colours->foreground(frame.colour.at<cv::Vec3b>(at_px)));
-    };
   }
 
   RegionLines find_lines(const JointLevel& level) {
@@ -208,7 +208,8 @@ class JointRegistration {
   const JointSettings& settings_;
   const RegistrationSettings& registration_;
   const double end_m_;
-  const double sigma_m_;    // standard deviation of a pair of depth
+  const double sigma_m_;  // standard deviation of a pair of depth
+  const PairWeight weight_;
   bool is_finest_ = false;  // whether the level is the last one, of whose updates the last is the result's evidence
   BrightnessImage brightness_;
   Lag lag_;
