@@ -1,16 +1,14 @@
 #pragma once
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 #include <functional>
 #include <optional>
 #include <vector>
 
 #include "pipeline/base/random.hpp"
+#include "pipeline/types/plane.hpp"
 
 namespace houghstream {
-
-/// A plane of points; its normal has unit length and points to the origin's side, as towards a camera.
-using Plane = Eigen::Hyperplane<double, 3>;
 
 /// Returns a value of a point: the distance from a plane within which it belongs to it, metres, or its weight.
 using ValueOfPoint = std::function<double(const Eigen::Vector3d&)>;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "pipeline/types/frame.hpp"
+#include "pipeline/types/plane.hpp"
 
 namespace houghstream {
 
@@ -19,7 +20,7 @@ struct TrainingView {
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
   /// Plane on which the object stands, camera frame, metres, its normal towards the object; nothing where it stands on
   /// none or none is known.
-  std::optional<Eigen::Hyperplane<double, 3>> support;
+  std::optional<Plane> support;
   std::string source;        ///< file it came from, for messages
   std::string object_frame;  ///< views of one class whose T_camera_object mean the same frame have equal names here
 };

@@ -2,7 +2,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "pipeline/geometry/plane_fit.hpp"
+#include "pipeline/types/plane.hpp"
 
 namespace houghstream {
 

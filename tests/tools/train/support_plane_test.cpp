@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "pipeline/base/random.hpp"
+#include "pipeline/types/plane.hpp"
 
 namespace houghstream {
 namespace {
@@ -24,7 +25,7 @@ TrainingView standing_view(double gap_m) {
   view.frame.colour = cv::Mat(kWideCamera.height, kWideCamera.width, CV_8UC3, cv::Scalar::all(90));
   view.frame.depth = cv::Mat(kWideCamera.height, kWideCamera.width, CV_32FC1);
   view.mask = cv::Mat::zeros(kWideCamera.height, kWideCamera.width, CV_8UC1);
-  const Eigen::Hyperplane<double, 3> table(kTableUp, view.T_camera_object.translation() - (0.06 + gap_m) * kTableUp);
+  const Plane table(kTableUp, view.T_camera_object.translation() - (0.06 + gap_m) * kTableUp);
   Random random(1);
   for (int y = 0; y < kWideCamera.height; ++y) {
     for (int x = 0; x < kWideCamera.width; ++x) {
