@@ -11,10 +11,12 @@
 namespace houghstream {
 namespace {
 
+/// An attitude is a way in which an object stands or lies (stable pose).
 constexpr auto kMaxAttitudes = static_cast<std::size_t>(ForestIndex::kMaxAttitudeFactor);
 
-/// Number of templates that are compared of a class that was taught in one attitude: those that most votes support.
-constexpr std::size_t kTemplates = 8;
+/// At most this many templates are compared of a class with one attitude: those that most votes support. More attitudes
+/// have proportionally more.
+constexpr std::size_t kTemplatesPerAttitude = 8;
 
 using WeightedViews = std::vector<std::pair<std::uint32_t, float>>;
 
@@ -24,11 +26,13 @@ constexpr std::size_t kBestSampled = 3;
 /// Templates from which the best match is searched.
 using SeedTemplates = BestTemplates<kMaxAttitudes + 1>;
 
-/// A hypothesis and what it is scored with.
+/// Holds a hypothesis with all that its scoring reads and writes.
 struct ScoringTask {
   const ScoringInput* input = nullptr;
   const Hypothesis* hypothesis = nullptr;
-  float attitude_factor = 1.0F;  ///< ForestIndex::attitude_factor() of its class
+  /// Number of attitudes that are searched, 1 to kMaxAttitudeFactor; it may be a fraction. 1: the class was taught in
+  /// one (ForestIndex::attitude_factor()).
+  float attitude_factor = 1.0F;
   std::size_t group = 0;
   ScoredHypothesis scored;
   std::optional<PlacedTemplate> sampled_best;  ///< see compare_sampled_views()
@@ -37,7 +41,8 @@ struct ScoringTask {
 /// Indices of tasks, in ascending order.
 using TaskIndices = std::vector<std::size_t>;
 
-/// Scores one hypothesis, in one thread. Its functions stand below in the order of their calls.
+/// Does one step of the scoring of a hypothesis, in one thread. A scorer is made anew for each step: what one step
+/// leaves to the next stands in the task and in `compared`.
 class HypothesisScorer {
  public:
   HypothesisScorer(ScoringTask& task, std::vector<PlacedTemplate>& compared, ScoringWorkspace::Worker& workspace)
@@ -88,7 +93,7 @@ class HypothesisScorer {
   ScoringWorkspace::Worker& workspace_;
 };
 
-// The steps of score_by_group(); they stand behind it in the order of their calls.
+// The steps of score_by_group(); they and the scorer's functions stand behind it in the order of their calls.
 std::vector<ScoringTask> list_tasks(const std::vector<GroupHypotheses>& groups);
 Evidence evidence_of_votes(const Forest& forest, const Hypothesis& hypothesis, const Camera& camera);
 void keep_most_promising(const EvidenceSettings& settings, std::vector<ScoringTask>& tasks);
@@ -192,88 +197,6 @@ TaskIndices all_tasks(const std::vector<ScoringTask>& tasks) {
   return all;
 }
 
-/// Returns the tasks whose score after the first comparison is at least kLikely.
-TaskIndices find_likely(const std::vector<ScoringTask>& tasks) {
-  constexpr float kLikely = 0.5F;  // score
-  TaskIndices likely;
-  likely.reserve(tasks.size());
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    const ScoredHypothesis& scored = tasks[i].scored;
-    if (scored.evidence.view != Evidence::kNoView && scored.detection.score >= kLikely) likely.push_back(i);
-  }
-  return likely;
-}
-
-/// Chooses the tasks of the subset that are compared with views of all attitudes: of classes with many views and with
-/// many votes, the `maximum` with the highest vote_logit().
-TaskIndices choose_sampled(const std::vector<ScoringTask>& tasks, const TaskIndices& subset, int maximum) {
-  constexpr float kManyVotes = 0.3F;  // of the nominal vote mass: a third of the object, seen as well as in training
-  TaskIndices eligible;
-  eligible.reserve(subset.size());
-  for (const std::size_t i : subset) {
-    const ScoringTask& task = tasks[i];
-    const bool has_templates = task.input->index.forest().scoring == Scoring::kEvidence;
-    if (!has_templates || task.attitude_factor == 1.0F || task.scored.evidence.relative_vote_mass < kManyVotes)
-      continue;
-    eligible.push_back(i);
-  }
-  return largest(std::move(eligible), maximum, [&](std::size_t i) { return vote_logit(tasks[i].scored.evidence); });
-}
-
-/// Chooses the tasks of the subset that are refined: the `maximum` with the highest scores. Hopeless ones are left out:
-/// many maxima are hopeless, and refinement is the most expensive step.
-TaskIndices choose_refined(const std::vector<ScoringTask>& tasks, const TaskIndices& subset, int maximum) {
-  // Score: votes bring occluded objects templates that hardly match. Half hidden boxes of YCB-V's scene 50 that reach
-  // 0.6 had 0.02 before.
-  constexpr float kHopeless = 0.005F;
-  TaskIndices eligible;
-  eligible.reserve(subset.size());
-  for (const std::size_t i : subset) {
-    const ScoredHypothesis& scored = tasks[i].scored;
-    if (scored.evidence.view == Evidence::kNoView || scored.detection.score < kHopeless) continue;
-    eligible.push_back(i);
-  }
-  return largest(std::move(eligible), maximum, [&](std::size_t i) { return tasks[i].scored.detection.score; });
-}
-
-/// Returns the tasks that are not likely, without those on the surface of a likely one whose score is `explains_from`
-/// or more.
-TaskIndices find_unexplained(const std::vector<ScoringTask>& tasks, const TaskIndices& likely, float explains_from) {
-  constexpr float kExplained = 0.6F;  // fraction of the surface that is seen
-  const auto cells_of = [&](std::size_t i) {
-    const Evidence& evidence = tasks[i].scored.evidence;
-    const ScoringInput& input = *tasks[i].input;
-    return UnoccludedCells(input.index.forest().views[evidence.view], evidence.view_centre, input.frame.frame);
-  };
-  std::vector<std::pair<std::size_t, UnoccludedCells>> confident;
-  for (const std::size_t i : likely) {
-    if (tasks[i].scored.detection.score >= explains_from) confident.emplace_back(i, cells_of(i));
-  }
-  const auto is_explained = [&](std::size_t i) {
-    if (tasks[i].scored.evidence.view == Evidence::kNoView) return false;
-    std::optional<UnoccludedCells> cells;
-    return std::any_of(confident.begin(), confident.end(), [&](const auto& other) {
-      if (!may_touch(tasks[i], tasks[other.first])) return false;
-      if (!cells) cells = cells_of(i);
-      return cells->fraction_in(other.second) > kExplained;
-    });
-  };
-  TaskIndices left;
-  left.reserve(tasks.size());
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    if (!std::binary_search(likely.begin(), likely.end(), i) && !is_explained(i)) left.push_back(i);
-  }
-  return left;
-}
-
-/// Returns whether the spheres about two objects meet.
-bool may_touch(const ScoringTask& a, const ScoringTask& b) {
-  const auto radius = [](const ScoringTask& task) {
-    return task.input->index.forest().classes[task.hypothesis->class_index].radius;
-  };
-  return (a.hypothesis->centre_camera - b.hypothesis->centre_camera).norm() < radius(a) + radius(b);
-}
-
 /// Compares the templates that most votes support with the frame.
 void HypothesisScorer::compare() {
   Detection& detection = scored_.detection;
@@ -285,7 +208,7 @@ void HypothesisScorer::compare() {
   detection.score = vote_score(scored_.evidence.relative_vote_mass);
   compared_.clear();
   if (forest_.scoring != Scoring::kEvidence) return;
-  compare_templates(kTemplates);
+  compare_templates(kTemplatesPerAttitude);
   if (const PlacedTemplate* best = best_compared()) set_match(*best, scored_.evidence);
   detection.score = score(object_.score_model, scored_.evidence);
 }
@@ -304,6 +227,50 @@ void HypothesisScorer::compare_templates(std::size_t count) {
   }
 }
 
+/// Returns the best match of all compared templates; null where none was compared.
+const PlacedTemplate* HypothesisScorer::best_compared() const {
+  const PlacedTemplate* best = compared_.empty() ? nullptr : &best_match(compared_);
+  if (sampled_best_ && (best == nullptr || matches_better(*sampled_best_, *best))) return &*sampled_best_;
+  return best;
+}
+
+/// Writes into the evidence how a template matches the frame, within its outline and across it.
+void HypothesisScorer::set_match(const PlacedTemplate& placed, Evidence& evidence) const {
+  evidence.view = placed.view;
+  evidence.view_centre = placed.centre_camera;
+  evidence.fit = placed.fit;
+  evidence.outline = measure_boundary_continuation(views_[placed.view], placed.centre_camera, input_.frame);
+}
+
+/// Returns the tasks whose score after the first comparison is at least kLikely.
+TaskIndices find_likely(const std::vector<ScoringTask>& tasks) {
+  constexpr float kLikely = 0.5F;  // score
+  TaskIndices likely;
+  likely.reserve(tasks.size());
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    const ScoredHypothesis& scored = tasks[i].scored;
+    if (scored.evidence.view != Evidence::kNoView && scored.detection.score >= kLikely) likely.push_back(i);
+  }
+  return likely;
+}
+
+/// Chooses the tasks of the subset that are compared with views of all attitudes: of classes with many views and with
+/// many votes, the `maximum` with the highest vote_logit().
+TaskIndices choose_sampled(const std::vector<ScoringTask>& tasks, const TaskIndices& subset, int maximum) {
+  // This is a fraction of the nominal vote mass: a third of the object, seen as well as in training.
+  constexpr float kManyVotes = 0.3F;
+  TaskIndices eligible;
+  eligible.reserve(subset.size());
+  for (const std::size_t i : subset) {
+    const ScoringTask& task = tasks[i];
+    const bool has_templates = task.input->index.forest().scoring == Scoring::kEvidence;
+    if (!has_templates || task.attitude_factor == 1.0F || task.scored.evidence.relative_vote_mass < kManyVotes)
+      continue;
+    eligible.push_back(i);
+  }
+  return largest(std::move(eligible), maximum, [&](std::size_t i) { return vote_logit(tasks[i].scored.evidence); });
+}
+
 /// Compares templates sampled from all attitudes at the centre: in real images votes support other
 /// views than in rendered ones, and those of a plain or symmetric object are often not of its attitude.
 void HypothesisScorer::compare_sampled_views() {
@@ -320,7 +287,7 @@ void HypothesisScorer::compare_sampled_views() {
 template <typename Places>
 BestTemplates<kBestSampled> HypothesisScorer::match_sampled_views(const Places& places) const {
   constexpr std::size_t kBestCoarse = 8;  // coarse views whose surroundings are compared too
-  constexpr std::size_t kRowStep = 3;  // of a template's rows a third tells as well which are worth a full comparison
+  constexpr std::size_t kRowStep = 3;  // every third row is enough to decide which templates deserve a full comparison
   const SampledViews& sampled = input_.index.sampled_views(hypothesis_.class_index);
   const std::size_t coarse = std::min(sampled.views.size(), SampledViews::kCoarse);
   const auto match = [&](std::uint32_t view, const Eigen::Vector3f& centre, auto& best) {
@@ -345,27 +312,28 @@ BestTemplates<kBestSampled> HypothesisScorer::match_sampled_views(const Places& 
   return aligned;
 }
 
-/// Returns the best of what was compared, nothing where nothing was.
-const PlacedTemplate* HypothesisScorer::best_compared() const {
-  const PlacedTemplate* best = compared_.empty() ? nullptr : &best_match(compared_);
-  if (sampled_best_ && (best == nullptr || matches_better(*sampled_best_, *best))) return &*sampled_best_;
-  return best;
+/// Chooses the tasks of the subset that are refined: the `maximum` with the highest scores. Hopeless ones are left out:
+/// many maxima are hopeless, and refinement is the most expensive step.
+TaskIndices choose_refined(const std::vector<ScoringTask>& tasks, const TaskIndices& subset, int maximum) {
+  // The limit is this low because votes bring occluded objects templates that hardly match: half hidden boxes of
+  // YCB-V's scene 50 that end at 0.6 have 0.02 here.
+  constexpr float kHopeless = 0.005F;
+  TaskIndices eligible;
+  eligible.reserve(subset.size());
+  for (const std::size_t i : subset) {
+    const ScoredHypothesis& scored = tasks[i].scored;
+    if (scored.evidence.view == Evidence::kNoView || scored.detection.score < kHopeless) continue;
+    eligible.push_back(i);
+  }
+  return largest(std::move(eligible), maximum, [&](std::size_t i) { return tasks[i].scored.detection.score; });
 }
 
-/// Writes into the evidence how a template matches the frame, within its outline and across it.
-void HypothesisScorer::set_match(const PlacedTemplate& placed, Evidence& evidence) const {
-  evidence.view = placed.view;
-  evidence.view_centre = placed.centre_camera;
-  evidence.fit = placed.fit;
-  evidence.outline = measure_boundary_continuation(views_[placed.view], placed.centre_camera, input_.frame);
-}
-
-/// Completes the evidence by the template that matches the frame best, after refinement. Of templates of unlike
-/// attitudes that one counts which most supports an object, by what all objects have in common: a template of a small
-/// side easily matches a part of the object, and only what lies beyond its outline tells them apart.
+/// Refines the best templates and keeps the one whose evidence most supports an object, by the weights common to all
+/// objects. Match quality does not suffice: a template of a small side matches a part of the object well, and only what
+/// lies beyond its outline tells them apart.
 void HypothesisScorer::refine() {
   constexpr ScoreModel kCommon;
-  compare_templates(static_cast<std::size_t>(kTemplates * attitude_factor_));
+  compare_templates(static_cast<std::size_t>(kTemplatesPerAttitude * attitude_factor_));
   const Evidence unrefined = scored_.evidence;
   workspace_.best_visited.clear();
   double max_log_odds = -std::numeric_limits<double>::infinity();
@@ -378,18 +346,19 @@ void HypothesisScorer::refine() {
     if (odds <= max_log_odds) continue;
     max_log_odds = odds;
     scored_.evidence = refined;
-    workspace_.visited.swap(workspace_.best_visited);
+    workspace_.visited.swap(workspace_.best_visited);  // best_visited: what the best refinement so far has compared
   }
   // Only the refinement that led to the best match supports rotations.
   compared_.insert(compared_.end(), workspace_.best_visited.begin(), workspace_.best_visited.end());
   scored_.detection.score = score(object_.score_model, scored_.evidence);
 }
 
-/// Returns the templates that match best, one more than its class was taught attitudes and each in an attitude unlike
-/// the others': of those that votes support, of the sampled ones, and of those sampled beside the centre.
+/// Returns the best matching templates of unlike attitudes, one more than attitudes are searched where these are
+/// several. They come from the templates that votes support, the sampled ones, and those sampled beside the centre.
 SeedTemplates HypothesisScorer::find_seeds() {
   constexpr float kUnlike_rad = 0.3F;
-  BestTemplates<kTemplates * kMaxAttitudes + 2 + kBestSampled> all;
+  // all compared, the best of them aligned, the best sampled one, and those beside the centre
+  BestTemplates<kTemplatesPerAttitude * kMaxAttitudes + 2 + kBestSampled> all;
   if (!compared_.empty()) all.add(align_best_templates(views_, input_.frame, compared_));
   for (const PlacedTemplate& placed : compared_) all.add(placed);
   if (sampled_best_) all.add(*sampled_best_);
@@ -413,7 +382,7 @@ SeedTemplates HypothesisScorer::find_seeds() {
 /// meet beside the middle of the object, as those of plain ones do, the right view matches no better there than others:
 /// on YCB-V a foam brick got scores of 0.14 to 0.22 in three of five images, and 0.9 from 1.5 cm beside.
 BestTemplates<kBestSampled> HypothesisScorer::match_beside_centre() const {
-  constexpr float kDisplacement = 0.25F;  // of the object's radius
+  constexpr float kDisplacement = 0.25F;  // fraction of the object's radius
   constexpr float kSure = 0.9F;           // score from which no other place is tried
   if (attitude_factor_ == 1.0F || scored_.detection.score >= kSure) return {};
   const Eigen::Vector3f& centre = hypothesis_.centre_camera;
@@ -455,8 +424,8 @@ void HypothesisScorer::complete() {
   add_rotations(weight_views(), detection.rotations);
 }
 
-/// Returns the box that votes and template say. Votes tell which patches belong to the object, depth tells where the
-/// template is not occluded: their errors are different ones, so the sides are taken midway.
+/// Returns the box midway between that of the votes and that of the template: votes tell which patches belong to the
+/// object, depth tells where the template is visible, and their errors differ.
 cv::Rect2f HypothesisScorer::visible_box_between(const cv::Rect2f& voted, const cv::Rect2f& fitted,
                                                  const Camera& camera) {
   const cv::Rect2f inside =
@@ -469,7 +438,7 @@ cv::Rect2f HypothesisScorer::visible_box_between(const cv::Rect2f& voted, const 
 /// Returns views with the weight of their rotation, heaviest first: that of the votes that support them. Of a class
 /// that was taught in many attitudes the views lie far apart, and how their templates match the frame says more.
 const WeightedViews& HypothesisScorer::weight_views() {
-  constexpr float kSharpness = 4.0F;
+  constexpr float kSharpness = 4.0F;  // inverse temperature of the softmax over match_quality()
   if (attitude_factor_ == 1.0F || compared_.empty()) return hypothesis_.views;
   WeightedViews& weighted = workspace_.weighted_views;
   weighted.clear();
@@ -493,6 +462,44 @@ void HypothesisScorer::add_rotations(const WeightedViews& views, std::vector<Rot
     if (rotations.size() >= max_count) break;
     rotations.push_back({R_camera_ray * Eigen::Quaternionf(views_[view].R_ray_object), weight});
   }
+}
+
+/// Returns the tasks that are not likely, without those on the surface of a likely one whose score is `explains_from`
+/// or more.
+TaskIndices find_unexplained(const std::vector<ScoringTask>& tasks, const TaskIndices& likely, float explains_from) {
+  constexpr float kExplained = 0.6F;  // fraction of the surface that is seen
+  const auto cells_of = [&](std::size_t i) {
+    const Evidence& evidence = tasks[i].scored.evidence;
+    const ScoringInput& input = *tasks[i].input;
+    return UnoccludedCells(input.index.forest().views[evidence.view], evidence.view_centre, input.frame.frame);
+  };
+  std::vector<std::pair<std::size_t, UnoccludedCells>> confident;
+  for (const std::size_t i : likely) {
+    if (tasks[i].scored.detection.score >= explains_from) confident.emplace_back(i, cells_of(i));
+  }
+  const auto is_explained = [&](std::size_t i) {
+    if (tasks[i].scored.evidence.view == Evidence::kNoView) return false;
+    std::optional<UnoccludedCells> cells;
+    return std::any_of(confident.begin(), confident.end(), [&](const auto& other) {
+      if (!may_touch(tasks[i], tasks[other.first])) return false;
+      if (!cells) cells = cells_of(i);
+      return cells->fraction_in(other.second) > kExplained;
+    });
+  };
+  TaskIndices left;
+  left.reserve(tasks.size());
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (!std::binary_search(likely.begin(), likely.end(), i) && !is_explained(i)) left.push_back(i);
+  }
+  return left;
+}
+
+/// Returns whether the spheres about two objects meet.
+bool may_touch(const ScoringTask& a, const ScoringTask& b) {
+  const auto radius = [](const ScoringTask& task) {
+    return task.input->index.forest().classes[task.hypothesis->class_index].radius;
+  };
+  return (a.hypothesis->centre_camera - b.hypothesis->centre_camera).norm() < radius(a) + radius(b);
 }
 
 }  // namespace

@@ -43,13 +43,13 @@ using GroupCandidates = std::vector<std::vector<ScoredHypothesis>>;
 /// Workspace of score_by_group(), used again from frame to frame.
 struct ScoringWorkspace {
   struct Worker {
-    std::vector<PlacedTemplate> visited;       ///< templates that were compared while one was refined
-    std::vector<PlacedTemplate> best_visited;  ///< templates of the refinement that led to the best match
+    std::vector<PlacedTemplate> visited;       ///< templates that the current refinement has compared
+    std::vector<PlacedTemplate> best_visited;  ///< templates that the best refinement so far has compared
     std::vector<std::pair<std::uint32_t, float>> weighted_views;  ///< views with the weight of their rotation
     BoxWorkspace box;
   };
   PerWorker<Worker> workers;
-  std::vector<std::vector<PlacedTemplate>> compared;  ///< of each hypothesis: templates compared with the frame
+  std::vector<std::vector<PlacedTemplate>> compared;  ///< templates that were compared with the frame, per hypothesis
 };
 
 /// Scores the hypotheses of all groups: how templates match the frame at each centre, the score that follows, the box.
