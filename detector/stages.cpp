@@ -21,7 +21,7 @@ std::vector<ScoredHypothesis> score_all_groups(const SearchContext& search, cons
   const bool is_coloured = search.forest().scoring == Scoring::kEvidence && settings.evidence.learn_camera_colours;
   return is_coloured
              ? score_in_camera_colours(groups, search.remembered_colours, settings.threads, workspace.scoring_workspace)
-             : score_groups(groups, settings.threads, workspace.scoring_workspace);
+             : score_in_taught_colours(groups, settings.threads, workspace.scoring_workspace);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ struct BoxWorkspace {
 };
 
 /// Returns the box of a hypothesis by back-projection of all supporting patches (paper, Section 2), frame pixels.
-/// Patches at an object's rim see little of it and support it weakly, so each side moves out to where the training
+/// Patches at an object's edge see little of it and support it weakly, so each side moves out to where the training
 /// views that the votes support have theirs, unless the patches end so far from it that the object must be occluded
 /// there.
 cv::Rect2f backproject_box(const Forest& forest, const Hypothesis& hypothesis, const PatchGrid& patches,

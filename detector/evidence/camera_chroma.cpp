@@ -10,7 +10,7 @@
 namespace houghstream {
 namespace {
 
-/// The camera's rendering of the colours of each class of each group.
+/// Holds the camera's chroma map for each class of each group: [group][class].
 using GroupChromaMaps = std::vector<std::vector<ChromaMap>>;
 
 /// A candidate from whose colours the camera's chroma map is learnt.
@@ -40,7 +40,7 @@ void add_samples(const Forest& forest, const std::vector<ScoredHypothesis>& cand
   for (const ScoredHypothesis& candidate : candidates) {
     if (candidate.evidence.view == Evidence::kNoView || !candidate.evidence.fit.colours.is_known) continue;
     const ObjectClass& object = class_of(forest, candidate);
-    const float probability = score_as_taught(object.score_model, candidate.evidence);
+    const float probability = score_with_typical_chroma(object.score_model, candidate.evidence);
     if (probability >= kMinProbability)
       by_class[candidate.detection.class_name].push_back({&candidate, &object, probability});
   }
@@ -119,7 +119,7 @@ std::vector<ChromaPair> collect_pairs(const std::vector<GroupHypotheses>& groups
 
 /// Returns whether views must be searched again in these colours, since more than the best of them may differ.
 bool differ_strongly(const std::vector<ChromaMap>& chroma_maps, const std::vector<ChromaMap>& before) {
-  // CIE a*b*, of a colour of medium strength. Chosen: about what light changes by itself.
+  // Distance in a*b* for a colour of medium chroma. It was chosen as about what light alone changes.
   constexpr double kMaxDifference_ab = 12.0;
   constexpr double kLightness = 60.0;
   for (std::size_t i = 0; i < chroma_maps.size(); ++i) {
@@ -159,7 +159,7 @@ void rescore(const ScoringInput& input, int threads, std::vector<ScoredHypothesi
     if (evidence.view == Evidence::kNoView) return;
     if (!input.frame.chroma_maps[class_index_of(forest, candidate)].is_learnt()) return;  // its colours are as taught
     const ScoreModel& model = class_of(forest, candidate).score_model;
-    if (score_as_taught(model, evidence) < kMinScore) return;
+    if (score_with_typical_chroma(model, evidence) < kMinScore) return;
     evidence.fit = match_template(forest.views[evidence.view], evidence.view_centre, input.frame);
     candidate.detection.score = score(model, evidence);
     const float threshold = input.settings.threshold_of(candidate.detection.class_name);
@@ -170,8 +170,8 @@ void rescore(const ScoringInput& input, int threads, std::vector<ScoredHypothesi
 
 }  // namespace
 
-std::vector<ScoredHypothesis> score_groups(const std::vector<GroupHypotheses>& groups, int threads,
-                                           ScoringWorkspace& workspace) {
+std::vector<ScoredHypothesis> score_in_taught_colours(const std::vector<GroupHypotheses>& groups, int threads,
+                                                      ScoringWorkspace& workspace) {
   return concatenate(score_by_group(groups, threads, workspace));
 }
 
@@ -188,11 +188,12 @@ std::vector<ScoredHypothesis> score_in_camera_colours(const std::vector<GroupHyp
   const bool is_grey = is_colourless(frames.front().frame.colour);
   for (std::size_t i = 0; i < groups.size() && is_grey; ++i)
     frames[i].chroma_maps.assign(groups[i].input.index.forest().classes.size(), colourless_camera());
-  if (is_grey) return score_groups(mapped, threads, workspace);
+  if (is_grey) return concatenate(score_by_group(mapped, threads, workspace));
   if (!colours.empty()) set_chroma_maps(fit_group_maps(groups, colours), frames);
   GroupCandidates candidates = score_by_group(mapped, threads, workspace);
+  // `mapped` refers to these frames: the maps that are set here are those of the next scoring.
   if (set_chroma_maps(fit_group_maps(groups, collect_pairs(groups, colours, candidates)), frames))
-    return score_groups(mapped, threads, workspace);
+    return concatenate(score_by_group(mapped, threads, workspace));
   for (std::size_t i = 0; i < groups.size(); ++i) rescore(mapped[i].input, threads, candidates[i]);
   return concatenate(std::move(candidates));
 }

@@ -22,7 +22,7 @@ using Short = hn::Rebind<std::int16_t, Float>;
 
 static_assert(kTemplateSide % hn::MaxLanes(Float()) == 0 && sizeof(TemplateCell) == sizeof(std::int32_t));
 
-/// For each set of up to eight lanes: its lanes, in ascending order, then zeros.
+/// Lists for each set of up to eight lanes its lanes in ascending order, then zeros.
 constexpr std::array<std::array<std::int32_t, 8>, 256> kLanesOfSet = [] {
   std::array<std::array<std::int32_t, 8>, 256> lanes{};
   for (std::size_t set = 0; set < lanes.size(); ++set) {
@@ -43,7 +43,8 @@ HWY_INLINE V compress(D d, V values, M mask) {
   return hn::TableLookupLanes(values, hn::SetTableIndices(d, kLanesOfSet[bits[0]].data()));
 }
 
-/// Returns the cells of a row of the box from a column on, as TemplateCell lies in memory; those of the rim are none.
+/// Returns a vector of TemplateCells of a row of the box, beginning at a column, in their memory layout. Lanes on the
+/// rim are not valid.
 HWY_INLINE Ints box_cells(std::size_t row, std::size_t column) {
   const Int d;
   const Ints columns = hn::Iota(d, static_cast<std::int32_t>(column));
@@ -53,12 +54,12 @@ HWY_INLINE Ints box_cells(std::size_t row, std::size_t column) {
 }
 
 /// Returns measured minus template depth, metres; NaN where the template has no depth.
-HWY_INLINE Floats difference_to(Floats beyond_centre, Ints template_mm, float metres_per_mm) {
+HWY_INLINE Floats difference_to(Floats depth_behind_centre, Ints template_mm, float metres_per_mm) {
   const Float d;
   const Floats template_depth = hn::Mul(hn::Set(d, metres_per_mm), hn::ConvertTo(d, template_mm));
   const auto is_known = hn::RebindMask(d, hn::Gt(template_mm, hn::Set(Int(), TemplateGrid::kNoDepth)));
   const Floats missing = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
-  return hn::IfThenElse(is_known, hn::Sub(beyond_centre, template_depth), missing);
+  return hn::IfThenElse(is_known, hn::Sub(depth_behind_centre, template_depth), missing);
 }
 
 void compare_in_vectors(const TemplateGrid& grid, const CellLayout& layout, const cv::Mat& depth, std::size_t row_step,
@@ -80,14 +81,14 @@ void compare_in_vectors(const TemplateGrid& grid, const CellLayout& layout, cons
       const Ints inside_x = hn::Min(hn::Max(x, hn::Zero(di)), last_px);
       const auto is_inside = hn::Eq(x, inside_x);
       const Floats expected = hn::Add(row_depth, hn::LoadU(d, layout.column_depth.data() + column));
-      const Floats difference_to_zero = hn::Sub(hn::GatherIndex(d, measured, inside_x), expected);
+      const Floats depth_behind_centre = hn::Sub(hn::GatherIndex(d, measured, inside_x), expected);
       if (TemplateGrid::is_in_box(static_cast<int>(row))) {
         const std::size_t cell = TemplateGrid::depth_index(static_cast<int>(row), static_cast<int>(column));
         const Ints on_object = hn::PromoteTo(di, hn::LoadU(ds, grid.mm.data() + cell));
         const auto shows_object = hn::And(is_inside, hn::Ne(on_object, no_object));
         hn::StoreU(compress(di, box_cells(row, column), shows_object), di,
                    reinterpret_cast<std::int32_t*>(out.cells.data() + out.object_cells));
-        hn::StoreU(compress(d, difference_to(difference_to_zero, on_object, layout.metres_per_mm),
+        hn::StoreU(compress(d, difference_to(depth_behind_centre, on_object, layout.metres_per_mm),
                             hn::RebindMask(d, shows_object)),
                    d, out.depth_difference.data() + out.object_cells);
         out.object_cells += hn::CountTrue(di, shows_object);
@@ -97,7 +98,7 @@ void compare_in_vectors(const TemplateGrid& grid, const CellLayout& layout, cons
         const Ints beside = hn::PromoteTo(di, hn::LoadU(ds, cell));
         const auto is_beside = hn::And(is_inside, hn::Ne(beside, no_object));
         hn::StoreU(
-            compress(d, difference_to(difference_to_zero, beside, layout.metres_per_mm), hn::RebindMask(d, is_beside)),
+            compress(d, difference_to(depth_behind_centre, beside, layout.metres_per_mm), hn::RebindMask(d, is_beside)),
             d, out.rim_difference.data() + out.rim_cells);
         out.rim_cells += hn::CountTrue(di, is_beside);
       }

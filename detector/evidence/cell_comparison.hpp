@@ -9,7 +9,8 @@
 
 namespace houghstream {
 
-/// A cell of a template. It has no values of its own: arrays of some hundred are made for each comparison, and filled.
+/// Identifies a cell of a template. Members have no initial values, since each comparison makes arrays of some hundred
+/// cells and fills them.
 struct TemplateCell {
   std::uint16_t colour_index;  ///< index into TemplateGrid::lab
   std::uint8_t row;
@@ -19,15 +20,16 @@ struct TemplateCell {
 constexpr std::size_t kTemplateSide = TemplateGrid::kSide;
 constexpr std::size_t kTemplateCells = kTemplateSide * kTemplateSide;
 
-/// One value for each cell, and space for the rest of a vector that is written behind the last.
+/// Holds one value per cell, and room so that a whole SIMD vector may be written at the last.
 template <typename T>
 using PerCell = std::array<T, kTemplateCells + 8>;
 
-/// Positions of a template's cells in a frame, and the depth of the template's zero at each of them.
+/// Gives where a template's cells lie in a frame, and which measured depth corresponds to template depth 0 there. Depth
+/// 0 of a template is the depth of the object's centre, across the ray (OffAxisSlope).
 struct CellLayout {
   std::array<int, kTemplateSide> column_px;  ///< frame pixels of the cells' centres; may be outside the frame
   std::array<int, kTemplateSide> row_px;
-  std::array<float, kTemplateSide> row_depth;     ///< depth of the template's zero in each row, metres
+  std::array<float, kTemplateSide> row_depth;     ///< measured depth of template depth 0 in each row, metres
   std::array<float, kTemplateSide> column_depth;  ///< amount added to row_depth in each column, metres
   float metres_per_mm = 0.001F;                   ///< metres per millimetre of template depth
 };

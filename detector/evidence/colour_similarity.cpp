@@ -6,10 +6,9 @@
 namespace houghstream {
 namespace {
 
-constexpr int kMinPairs = 12;       // pairs from which a comparison means something
-constexpr double kNeutral = 128.0;  // a* and b* of grey
-constexpr double kPaleChroma_sq =
-    120.0;  // squared strength in the a*b* plane about which a hue begins to mean something
+constexpr int kMinPairs = 12;             // pairs from which a comparison means something
+constexpr double kNeutral = 128.0;        // a* and b* of grey
+constexpr double kPaleChroma_sq = 120.0;  // squared C*ab below which a hue is unreliable
 
 }  // namespace
 
@@ -53,8 +52,8 @@ MeanColours ColourSimilarity::means() const {
 
 float ColourSimilarity::mean_chroma_distance() const {
   constexpr double kUniformVariance = 100.0;  // variance of a and b that plain surfaces have in changing light
-  constexpr double kMinStrength = 0.5;        // strengths over the expected one
-  constexpr double kMaxStrength = 2.5;
+  constexpr double kMinRatio = 0.5;           // limits of the chroma (C*ab) over the expected one
+  constexpr double kMaxRatio = 2.5;
   if (count_ < kMinPairs) return 0.0F;
   const double count = count_;
   const auto mean = [&](std::size_t channel, std::size_t which) {
@@ -62,9 +61,9 @@ float ColourSimilarity::mean_chroma_distance() const {
   };
   const double expected_sq = mean(1, 0) * mean(1, 0) + mean(2, 0) * mean(2, 0);
   const double product = mean(1, 0) * mean(1, 1) + mean(2, 0) * mean(2, 1);
-  const double strength = std::clamp(product / std::max(expected_sq, 1.0), kMinStrength, kMaxStrength);
-  const double a = mean(1, 1) - strength * mean(1, 0);
-  const double b = mean(2, 1) - strength * mean(2, 0);
+  const double chroma_ratio = std::clamp(product / std::max(expected_sq, 1.0), kMinRatio, kMaxRatio);
+  const double a = mean(1, 1) - chroma_ratio * mean(1, 0);
+  const double b = mean(2, 1) - chroma_ratio * mean(2, 0);
   return static_cast<float>(
       std::min(4.0, std::sqrt((a * a + b * b) / (kUniformVariance + observed_variance(1) + observed_variance(2)))));
 }

@@ -54,8 +54,8 @@ class ColourSimilarity {
   MeanColours means() const;
 
   /// Returns the distance of the mean chroma from the expected one in the a*b* plane, over the standard deviation of
-  /// the observed chroma, at most 4; 0 for fewer than twelve pairs. The strength of the expected chroma is free, since
-  /// haze and cameras change it. This separates uniform surfaces, which correlation cannot.
+  /// the observed chroma, at most 4; 0 for fewer than twelve pairs. The magnitude of the expected chroma (CIE C*ab) is
+  /// free, since haze and cameras change it. This separates uniform surfaces, which correlation cannot.
   float mean_chroma_distance() const;
 
   /// Returns how much the sum of the scalar products of the chroma vectors lacks to the largest value that vectors of

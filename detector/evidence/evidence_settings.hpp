@@ -12,25 +12,25 @@ struct EvidenceSettings {
   /// Smallest score that is reported. In development_world_20 to 67 95 % of the detections from 0.60 on are true.
   float threshold = 0.65F;
   std::map<std::string, float> class_thresholds{};  ///< threshold of one class, by name; of the others: `threshold`
-  /// Minimum score of a candidate (a detection for a pose to confirm, Detection::reported); 1: no candidates.
+  /// Minimum score of a candidate, a detection for a pose to confirm (Detection::reported); 1 disables candidates.
   float candidates_from = 1.0F;
   int max_candidates = 16;  ///< the strongest; a frame full of weak maxima must not hold up the poses of the others
-  /// Hypotheses of a frame that are compared with view templates: those whose votes promise most (vote_logit()). Up
-  /// to 13 objects never have more. Chosen on 88 images of furnished rooms: of 21 objects' hypotheses the first 80
-  /// held 257 of 260 objects, the first 160 all.
+  /// Maximum number of hypotheses of a frame that are compared with view templates: those with the highest
+  /// vote_logit(). Frames with up to 13 objects never have more. It was chosen on 88 images of furnished rooms: of 21
+  /// objects' hypotheses the first 80 held 257 of 260 objects, the first 160 all.
   int max_compared = 160;
-  /// Of the compared hypotheses those with many votes that are compared with views of all attitudes too
-  /// (ForestIndex::sampled_views), beside the likely ones: those whose votes promise most. Of 454 objects that were
-  /// found in furnished rooms and on YCB-V, with 21 to 60 taught, the first 48 of a frame held all but a few that were
+  /// Maximum number of hypotheses that are also compared with views of all attitudes (ForestIndex::sampled_views),
+  /// besides the likely ones: those with the highest vote_logit() among those with many votes. The first 48 held all
+  /// but a few of 454 objects that were found in furnished rooms and on YCB-V, with 21 to 60 taught; these few were
   /// likely already.
   int max_sampled = 48;
   int max_refined = 64;  ///< maximum number of compared hypotheses whose templates are refined, highest scores first
-  /// Score from which a hypothesis explains the surface that it shows: others on it are dropped (UnoccludedCells).
-  /// Above 1 none does.
+  /// A hypothesis with at least this score explains the surface that it shows: others there are dropped
+  /// (UnoccludedCells). A value above 1 disables this.
   float explains_from = 0.9F;
   int max_rotations = 48;  ///< rotations handed to the pose process
-  /// Views are brought to the colours of the camera (camera_chroma.hpp). Scores are learnt without: rendered images
-  /// have the models' own colours, and what a map leaves of them is less than what it leaves of a real camera's.
+  /// Views are mapped to the camera's colours (camera_chroma.hpp). Scores are learnt without it: rendered images have
+  /// the models' own colours.
   bool learn_camera_colours = true;
 
   /// Returns the smallest score of this class that is reported.
@@ -56,7 +56,8 @@ void fields(const EvidenceSettings& /*settings*/, const Visit& visit) {
 /// Settings that decide which of two overlapping detections stays (non-maximum suppression).
 struct SuppressionSettings {
   float max_overlap = 0.5F;  ///< a weaker box of another object may overlap a stronger one by this IoU
-  /// ... if that one is more likely than not and so many times as likely; of its own class always.
+  /// A weaker detection of another class is suppressed if the stronger one's score is above 0.5 and this many times as
+  /// high. One of its own class is always suppressed.
   float dominance = 2.0F;
 };
 

@@ -419,7 +419,7 @@ void HypothesisScorer::complete() {
   if (forest_.scoring == Scoring::kEvidence)
     detection.box_px = visible_box_between(detection.box_px, scored_.evidence.fit.visible_box_px, camera);
   const float min_score = std::min(input_.settings.threshold_of(object_.name), input_.settings.candidates_from);
-  const float max_score = std::max(detection.score, score_as_taught(object_.score_model, scored_.evidence));
+  const float max_score = std::max(detection.score, score_with_typical_chroma(object_.score_model, scored_.evidence));
   if (max_score < min_score) return;  // most of them: nothing reads their rotations
   add_rotations(weight_views(), detection.rotations);
 }

@@ -69,7 +69,7 @@ float score(const ScoreModel& model, const Evidence& evidence) {
   return static_cast<float>(logistic(score_logit(model, score_terms(evidence))));
 }
 
-float score_as_taught(const ScoreModel& model, const Evidence& evidence) {
+float score_with_typical_chroma(const ScoreModel& model, const Evidence& evidence) {
   Evidence as_taught = evidence;
   as_taught.fit.mean_chroma_distance = 0.2F;
   as_taught.fit.hue_mismatch = 0.1F;

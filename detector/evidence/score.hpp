@@ -21,7 +21,8 @@ struct Evidence {
   Eigen::Vector3f view_centre = Eigen::Vector3f::Zero();  ///< place of its centre, camera frame, metres
   TemplateMatch fit;                                      ///< its match there
   BoundaryContinuation outline;                           ///< continuation across its outline
-  float alternative_scale_gain = -0.4F;  ///< alternative_scale_gain; where it is not computed, about that of objects
+  /// Result of alternative_scale_gain(); the default is typical of true objects.
+  float alternative_scale_gain = -0.4F;
 };
 
 /// Returns the evidence as the terms that ScoreModel::weights multiply.
@@ -35,7 +36,7 @@ float score(const ScoreModel& model, const Evidence& evidence);
 
 /// Returns the score that the hypothesis would have if its chroma differed from the template's by as little as that of
 /// objects mostly does, whatever the camera makes of it.
-float score_as_taught(const ScoreModel& model, const Evidence& evidence);
+float score_with_typical_chroma(const ScoreModel& model, const Evidence& evidence);
 
 /// Returns a score from votes alone. It rises with their mass and is 0.1 at a twentieth of the nominal mass: that of an
 /// object of which a tenth is visible, the least that counts as ground truth, seen half as well as in training.

@@ -14,6 +14,7 @@ PlacedTemplate align_template(const std::vector<ViewTemplate>& views, PlacedTemp
                               float step_cells) {
   constexpr int kSteps = 4;
   const ViewTemplate& view = views[placed.view];
+  // A step to the right and one down are in metres at the centre's depth.
   const float right = step_cells * (view.box[2] - view.box[0]) / TemplateGrid::kBoxSide;
   const float down = step_cells * (view.box[3] - view.box[1]) / TemplateGrid::kBoxSide;
   const std::array<Eigen::Vector3f, 4> moves = {Eigen::Vector3f(right, 0, 0), Eigen::Vector3f(-right, 0, 0),

@@ -24,14 +24,14 @@ inline bool matches_better(const PlacedTemplate& a, const PlacedTemplate& b) {
   return match_quality(a.fit) > match_quality(b.fit);
 }
 
-/// The templates that match best of those that are added, at most kMost, best first; equal ones in the order in which
-/// they came. It needs no memory of its own, as a frame has many of them.
-template <std::size_t kMost>
+/// Keeps the kMax best matches of those added, best first; equal ones keep their order. It does not allocate, since a
+/// frame makes many.
+template <std::size_t kMax>
 class BestTemplates {
  public:
   void add(const PlacedTemplate& placed) {
-    if (count_ == kMost && !matches_better(placed, templates_[kMost - 1])) return;
-    if (count_ < kMost) ++count_;
+    if (count_ == kMax && !matches_better(placed, templates_[kMax - 1])) return;
+    if (count_ < kMax) ++count_;
     std::size_t place = count_ - 1;
     for (; place > 0 && matches_better(placed, templates_[place - 1]); --place)
       templates_[place] = templates_[place - 1];
@@ -44,7 +44,7 @@ class BestTemplates {
   const PlacedTemplate* end() const { return templates_.data() + count_; }
 
  private:
-  std::array<PlacedTemplate, kMost> templates_;
+  std::array<PlacedTemplate, kMax> templates_;
   std::size_t count_ = 0;
 };
 

@@ -19,16 +19,16 @@ constexpr int kSide = TemplateGrid::kSide;
 struct Comparison {
   CellLayout layout;
   CellDepths depths;
-  float left = 0.0F;  // of the first cell, frame pixels
-  float top = 0.0F;
+  float left = 0.0F;  // left edge of the first cell, frame pixels
+  float top = 0.0F;   // its top edge
   float cell_width = 0.0F;
   float cell_height = 0.0F;
-  cv::Point2f centre_px;  // of the view, as cell_centre()
+  cv::Point2f centre_px;  // projected centre of the view, in the convention of cell_centre()
   float metres_per_px = 0.0F;
 
-  /// Returns how far the measured surface lies behind the template's zero at a cell, metres; NaN where depth is not
-  /// measured, nothing where the cell is not in the frame.
-  std::optional<float> beyond_centre(const RgbdFrame& frame, OutlineCells::Cell cell) const {
+  /// Returns how far the measured surface lies behind template depth 0 (CellLayout) at a cell, metres; NaN where depth
+  /// is not measured, nothing where the cell is not in the frame.
+  std::optional<float> depth_behind_centre(const RgbdFrame& frame, OutlineCells::Cell cell) const {
     const cv::Point at(layout.column_px[cell.column], layout.row_px[cell.row]);
     if (!cv::Rect(cv::Point(), frame.depth.size()).contains(at)) return std::nullopt;
     return frame.depth.at<float>(at) - (layout.row_depth[cell.row] + layout.column_depth[cell.column]);
@@ -60,12 +60,13 @@ class CellColours {
   std::array<int, kSide> y_px_;
 };
 
-// The steps of the two functions below; they stand behind them in the order of their calls.
+// The steps of what stands below: match_template(), UnoccludedCells and measure_boundary_continuation(). They stand
+// behind these in the order of their calls.
 void compare_template(const ViewTemplate& view, const Eigen::Vector3f& centre, const RgbdFrame& frame,
-                      const Sampling& sampling, Comparison& out);
-int floor_to_int(float value);
+                      const ComparisonOptions& options, Comparison& out);
 void project_cells(const ViewTemplate& view, const Eigen::Vector3f& centre, const Camera& camera, float size,
                    Comparison& out);
+int floor_to_int(float value);
 float depth_tolerance_at(float z);
 std::size_t select_level(float cell_width, const LabLevels& levels);
 void collect_colours(const CellTally& tally, const TemplateGrid& appearance, const CellColours& colours,
@@ -78,9 +79,9 @@ std::pair<int, int> range(LineBits seen);
 }  // namespace
 
 TemplateMatch match_template(const ViewTemplate& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame,
-                             const Sampling& sampling) {
+                             const ComparisonOptions& options) {
   Comparison comparison;
-  compare_template(view, centre_camera, frame.frame, sampling, comparison);
+  compare_template(view, centre_camera, frame.frame, options, comparison);
   const float shift = median_depth_shift(comparison.depths);
   const float tolerance = depth_tolerance_at(centre_camera.z());
   CellTally tally;
@@ -153,16 +154,17 @@ BoundaryContinuation measure_boundary_continuation(const ViewTemplate& view, con
   const float shift = median_depth_shift(comparison.depths);
   const float tolerance = depth_tolerance_at(centre_camera.z());
   const TemplateGrid& appearance = view.appearance;
-  BoundaryContinuation fit;
+  BoundaryContinuation continuation;
   const TemplateOutline outline = find_outline(appearance);
   for (std::size_t i = 0; i < outline.count; ++i) {
     const OutlineCells& cells = outline.crossings[i];
     const OutlineCells::Cell in = cells.inside;
     const OutlineCells::Cell out = cells.beyond;
-    const std::optional<float> inside = comparison.beyond_centre(frame.frame, in);
-    const std::optional<float> beyond = comparison.beyond_centre(frame.frame, out);
+    const std::optional<float> inside = comparison.depth_behind_centre(frame.frame, in);
+    const std::optional<float> beyond = comparison.depth_behind_centre(frame.frame, out);
     if (!inside || !beyond) continue;
     const std::int16_t mm = appearance.depth_mm(in.row, in.column);
+    // a nearer surface than the template's: negative beyond the tolerance
     const bool is_occluded =
         mm > TemplateGrid::kNoDepth && *inside - comparison.layout.metres_per_mm * mm - shift < -tolerance;
     if (is_occluded) continue;
@@ -173,20 +175,20 @@ BoundaryContinuation measure_boundary_continuation(const ViewTemplate& view, con
     sample.expected_depth_change =
         cells.gained_mm > TemplateGrid::kNoDepth ? comparison.layout.metres_per_mm * cells.gained_mm : kNoValue;
     sample.colour_sq = colour_distance_sq(colours.at(in.row, in.column), colours.at(out.row, out.column));
-    if (!is_foreground_step(sample, tolerance)) fit.add(sample, tolerance);
+    if (!is_foreground_step(sample, tolerance)) continuation.add(sample, tolerance);
   }
-  return fit;
+  return continuation;
 }
 
 namespace {
 
 /// Places a template in the frame, and compares its depth there, cell by cell.
 void compare_template(const ViewTemplate& view, const Eigen::Vector3f& centre, const RgbdFrame& frame,
-                      const Sampling& sampling, Comparison& out) {
-  project_cells(view, centre, frame.camera, sampling.size, out);
+                      const ComparisonOptions& options, Comparison& out) {
+  project_cells(view, centre, frame.camera, options.size, out);
   out.metres_per_px = static_cast<float>(frame.camera.metres_per_px(centre.z()));
   CellLayout& layout = out.layout;
-  layout.metres_per_mm = 0.001F * sampling.size;
+  layout.metres_per_mm = 0.001F * options.size;
   const OffAxisSlope slope = off_axis_slope(centre);
   for (std::size_t i = 0; i < kSide; ++i) {
     const cv::Point2f px = out.cell_centre(i, i);
@@ -195,26 +197,27 @@ void compare_template(const ViewTemplate& view, const Eigen::Vector3f& centre, c
     layout.column_depth[i] = slope.right * out.metres_per_px * (px.x - out.centre_px.x);
     layout.row_depth[i] = centre.z() + slope.down * out.metres_per_px * (px.y - out.centre_px.y);
   }
-  compare_depths(view.appearance, layout, frame.depth, sampling.row_step, out.depths);
-}
-
-/// Returns std::floor() of a value, faster than processors without an instruction for it have it.
-int floor_to_int(float value) {
-  const int towards_zero = static_cast<int>(value);
-  return towards_zero - (value < static_cast<float>(towards_zero) ? 1 : 0);
+  compare_depths(view.appearance, layout, frame.depth, options.row_step, out.depths);
 }
 
 /// Computes where the template's cells lie in the frame.
 void project_cells(const ViewTemplate& view, const Eigen::Vector3f& centre, const Camera& camera, float size,
                    Comparison& out) {
   const Eigen::Vector2d centre_px = camera.project(centre.cast<double>());
-  const auto px_per_metre = size * static_cast<float>(1.0 / camera.metres_per_px(centre.z()));  // of the view
+  // pixels per metre of the view
+  const auto px_per_metre = size * static_cast<float>(1.0 / camera.metres_per_px(centre.z()));
   out.cell_width = px_per_metre * (view.box[2] - view.box[0]) / TemplateGrid::kBoxSide;
   out.cell_height = px_per_metre * (view.box[3] - view.box[1]) / TemplateGrid::kBoxSide;
   // pixel centres are whole numbers to the camera, while a box counts from the first pixel's edge
   out.centre_px = {static_cast<float>(centre_px.x()) + 0.5F, static_cast<float>(centre_px.y()) + 0.5F};
   out.left = out.centre_px.x + px_per_metre * view.box[0] - TemplateGrid::kRim * out.cell_width;
   out.top = out.centre_px.y + px_per_metre * view.box[1] - TemplateGrid::kRim * out.cell_height;
+}
+
+/// Returns std::floor(value) as an int; faster where the processor has no rounding instruction.
+int floor_to_int(float value) {
+  const int towards_zero = static_cast<int>(value);
+  return towards_zero - (value < static_cast<float>(towards_zero) ? 1 : 0);
 }
 
 /// Returns the tolerance of depth, metres: alignment, and the noise of a structured-light camera.
@@ -224,7 +227,7 @@ float depth_tolerance_at(float z) {
 
 /// Returns the level whose pixels show about as much as a cell does: finer detail than that of the template is noise.
 std::size_t select_level(float cell_width, const LabLevels& levels) {
-  constexpr float kMeanSize_px = 3.0F;  // pixels of a level: what each of them is the mean of
+  constexpr float kMeanSize_px = 3.0F;  // width, in pixels of its level, of the square whose mean a pixel is
   const int level = static_cast<int>(std::lround(std::log2(std::max(cell_width, kMeanSize_px) / kMeanSize_px)));
   return std::min(static_cast<std::size_t>(level), levels.size() - 1);
 }
@@ -260,7 +263,7 @@ void collect_colours(const CellTally& tally, const TemplateGrid& appearance, con
 /// cells, written out so that compilers make vectors of it.
 void apply_chroma_map(const ChromaMap& camera, ColourPairs& pairs) {
   constexpr float kGrey = 128.0F;
-  constexpr float kLightness = 100.0F / 255.0F;  // of 8-bit L*
+  constexpr float kLightness = 100.0F / 255.0F;  // scale from 8-bit L* to 0..100
   const Eigen::Matrix<float, ChromaMap::kParameters, 1> map = camera.parameters().cast<float>();
   const auto to_byte = [](float value) {
     return static_cast<std::int16_t>(static_cast<std::int32_t>(std::clamp(value + 0.5F, 0.0F, 255.0F)));

@@ -14,7 +14,7 @@
 
 namespace houghstream {
 
-/// A frame with its colours in the form of templates, CIE L*a*b*.
+/// Holds a frame with its colours in the colour space of view templates, CIE L*a*b*.
 struct LabFrame {
   const RgbdFrame& frame;
   LabLevels lab;       ///< levels of make_smoothed_lab()
@@ -87,17 +87,17 @@ class UnoccludedCells {
   std::array<std::uint32_t, TemplateGrid::kSide> rows_{};  ///< a bit for each column
 };
 
-/// How a template is compared.
-struct Sampling {
-  float size = 1.0F;         ///< of the object, over the template's
-  std::size_t row_step = 1;  ///< of the rows of cells every so manyth is compared
+/// Describes how a template is compared.
+struct ComparisonOptions {
+  float size = 1.0F;         ///< object size over the template's
+  std::size_t row_step = 1;  ///< every row_step-th row of cells is compared
 };
 
 /// Compares a template with the frame, cell by cell, after moving it along the ray by at most a few centimetres to
 /// where most of it agrees: the depth of a vote is less exact than that of a surface. Brightness, contrast and colour
 /// cast, which the light decides, do not change the match.
 TemplateMatch match_template(const ViewTemplate& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame,
-                             const Sampling& sampling = {});
+                             const ComparisonOptions& options = {});
 
 /// Measures whether surface and colour end where the template's outline is. Places where something lies in front of the
 /// object, within or beyond the outline, are left out.
