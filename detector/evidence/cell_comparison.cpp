@@ -67,7 +67,7 @@ void compare_in_vectors(const TemplateGrid& grid, const CellLayout& layout, cons
   const Float d;
   const Int di;
   const Short ds;
-  const Ints no_object = hn::Set(di, TemplateGrid::kBeside);
+  const Ints no_object = hn::Set(di, TemplateGrid::kNoObject);
   const Ints last_px = hn::Set(di, depth.cols - 1);
   out.object_cells = 0;
   out.rim_cells = 0;

@@ -245,8 +245,8 @@ bool is_fraction(float value) {
 bool is_within_box(const TemplateGrid& grid) {
   for (int row = TemplateGrid::kRim; row < TemplateGrid::kRim + TemplateGrid::kBoxSide; ++row) {
     for (int i = 0; i < TemplateGrid::kRim; ++i) {
-      if (grid.depth_mm(row, i) != TemplateGrid::kBeside ||
-          grid.depth_mm(row, TemplateGrid::kSide - 1 - i) != TemplateGrid::kBeside)
+      if (grid.depth_mm(row, i) != TemplateGrid::kNoObject ||
+          grid.depth_mm(row, TemplateGrid::kSide - 1 - i) != TemplateGrid::kNoObject)
         return false;
     }
   }

@@ -23,9 +23,9 @@ struct Line {
     const auto position = static_cast<std::uint8_t>(number);
     return is_row ? OutlineCells::Cell{position, along} : OutlineCells::Cell{along, position};
   }
-  /// Returns TemplateGrid::mm of a cell, or kBeside where there is no such cell.
+  /// Returns TemplateGrid::mm of a cell, or kNoObject where there is no such cell.
   std::int16_t mm(const TemplateGrid& grid, int i) const {
-    if (i < 0 || i >= kSide) return TemplateGrid::kBeside;
+    if (i < 0 || i >= kSide) return TemplateGrid::kNoObject;
     return is_row ? grid.depth_mm(number, i) : grid.depth_mm(i, number);
   }
 };
@@ -36,7 +36,7 @@ std::optional<OutlineCells> find_crossing(const TemplateGrid& grid, const Line& 
   constexpr int kInwards = 2;  // cells to the one from which the slope of the surface is computed
   const int inside = outermost - out;
   const std::int16_t depth_mm = line.mm(grid, inside);
-  if (depth_mm == TemplateGrid::kBeside) return std::nullopt;
+  if (depth_mm == TemplateGrid::kNoObject) return std::nullopt;
   OutlineCells pair{line.cell(inside), line.cell(inside + OutlineCells::kApart * out), TemplateGrid::kNoDepth};
   const std::int16_t inner_depth_mm = line.mm(grid, inside - kInwards * out);
   if (depth_mm <= TemplateGrid::kNoDepth || inner_depth_mm <= TemplateGrid::kNoDepth) return pair;
@@ -76,10 +76,10 @@ TemplateGrid make_template_grid(const RgbdFrame& view, const cv::Mat& mask, cons
 }
 
 void mark_rim(TemplateGrid& grid) {
-  grid.beside.fill(TemplateGrid::kBeside);
+  grid.beside.fill(TemplateGrid::kNoObject);
   for (int j = 0; j < TemplateGrid::kRimRows; ++j) {
     for (int i = 0; i < kSide; ++i) {
-      if (grid.depth_mm(j, i) != TemplateGrid::kBeside) continue;
+      if (grid.depth_mm(j, i) != TemplateGrid::kNoObject) continue;
       int nearest_sq = 2 * TemplateGrid::kRim * TemplateGrid::kRim + 1;
       const int last_row = std::min(TemplateGrid::kRimRows - 1, j + TemplateGrid::kRim);
       for (int y = std::max(0, j - TemplateGrid::kRim); y <= last_row; ++y) {
@@ -100,8 +100,8 @@ TemplateOutline find_outline(const TemplateGrid& grid) {
   const auto mark_ends = [&](const Line& line) {
     int first = 0;
     int last = kSide - 1;
-    while (first < kSide && line.mm(grid, first) == TemplateGrid::kBeside) ++first;
-    while (last >= 0 && line.mm(grid, last) == TemplateGrid::kBeside) --last;
+    while (first < kSide && line.mm(grid, first) == TemplateGrid::kNoObject) ++first;
+    while (last >= 0 && line.mm(grid, last) == TemplateGrid::kNoObject) --last;
     if (first > last) return;
     for (const auto& [outermost, out] : {std::pair(first, -1), std::pair(last, 1)}) {
       if (const auto pair = find_crossing(grid, line, outermost, out)) outline.crossings[outline.count++] = *pair;

@@ -18,8 +18,8 @@ struct OutlineCells {
   static constexpr int kApart = 3;  ///< cells
   Cell inside;                      ///< the object's, one cell in from its outline
   Cell beyond;                      ///< cell two cells outside the outline
-  /// Expected change of depth from the inner to the outer cell if the object's surface continues straight, millimetres,
-  /// relative as TemplateGrid::mm; TemplateGrid::kNoDepth where it is unknown.
+  /// Change of depth that is expected from the inner to the outer cell if the object's surface continues straight,
+  /// millimetres, relative as TemplateGrid::mm; TemplateGrid::kNoDepth where it is unknown.
   std::int16_t gained_mm = 0;
 };
 
@@ -31,20 +31,22 @@ struct TemplateGrid {
   static constexpr int kRim = 2;       ///< cells around it
   static constexpr int kSide = kBoxSide + 2 * kRim;
   static constexpr int kRimRows = kRim + (kBoxSide * 3) / 5;  ///< number of the first rows that `beside` covers
-  static constexpr std::int16_t kBeside = -32768;             ///< the cell does not show the object
+  static constexpr std::int16_t kNoObject = -32768;           ///< the cell does not show the object
   static constexpr std::int16_t kNoDepth = -32767;            ///< it does, but no depth was measured
+  [[deprecated("is kNoObject now")]] static constexpr std::int16_t kBeside = kNoObject;  ///< for one release
   /// Depth of the object, row by row from the box's first row on; as it lies across the ray to the centre, see
-  /// OffAxisSlope. The columns of the rim are kBeside.
+  /// OffAxisSlope. The columns of the rim are kNoObject.
   std::array<std::int16_t, kBoxSide * kSide> mm;
-  /// Depth of the nearest cell of the object in cells beside the outline, row by row from the rim's first row on;
-  /// elsewhere kBeside. Rows further down have none, since what the object stands on may touch it there.
+  /// Depth, millimetres, of the nearest cell of the object in the cells of the rim beside the outline, row by row from
+  /// the rim's first row on; elsewhere kNoObject. Rows further down have none, since what the object stands on may
+  /// touch it there.
   std::array<std::int16_t, kRimRows * kSide> beside;
   std::array<std::array<std::uint8_t, 3>, kBoxSide * kBoxSide> lab{};  ///< colour of the box's cells, 8-bit CIE L*a*b*
 
   /// Makes a grid that shows no object.
   TemplateGrid() {
-    mm.fill(kBeside);
-    beside.fill(kBeside);
+    mm.fill(kNoObject);
+    beside.fill(kNoObject);
   }
 
   /// Returns whether a row crosses the box.
@@ -58,7 +60,7 @@ struct TemplateGrid {
     return static_cast<std::size_t>((row - kRim) * kBoxSide + column - kRim);
   }
   /// Returns the depth of the object at any cell.
-  std::int16_t depth_mm(int row, int column) const { return is_in_box(row) ? mm[depth_index(row, column)] : kBeside; }
+  std::int16_t depth_mm(int row, int column) const { return is_in_box(row) ? mm[depth_index(row, column)] : kNoObject; }
 };
 
 /// Returns the grid of a view. `mask` is CV_8UC1, 255 on the object, `box_px` its bounding box, `centre_camera` the

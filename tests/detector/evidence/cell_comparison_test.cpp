@@ -71,13 +71,13 @@ struct Reference {
       return mm > TemplateGrid::kNoDepth ? beyond - made.layout.metres_per_mm * static_cast<float>(mm) : kNoValue;
     };
     const std::int16_t mm = made.grid.depth_mm(static_cast<int>(row), static_cast<int>(column));
-    if (mm != TemplateGrid::kBeside) {
+    if (mm != TemplateGrid::kNoObject) {
       cells.emplace_back(row, column);
       depth_difference.push_back(over(mm));
     }
     if (row >= TemplateGrid::kRimRows) return;
     const std::int16_t beside = made.grid.beside[row * kTemplateSide + column];
-    if (beside != TemplateGrid::kBeside) rim_difference.push_back(over(beside));
+    if (beside != TemplateGrid::kNoObject) rim_difference.push_back(over(beside));
   }
 
   std::vector<std::pair<std::size_t, std::size_t>> cells;  // rows and columns

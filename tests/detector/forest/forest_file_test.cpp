@@ -101,7 +101,7 @@ std::string as_version_16(const Forest& forest) {
     for_each_cell([&](int row, int column) { payload(grid.depth_mm(row, column)); });
     for_each_cell([&](int row, int column) {
       const auto cell = static_cast<std::size_t>(row * TemplateGrid::kSide + column);
-      payload(row < TemplateGrid::kRimRows ? grid.beside[cell] : TemplateGrid::kBeside);
+      payload(row < TemplateGrid::kRimRows ? grid.beside[cell] : TemplateGrid::kNoObject);
     });
     for_each_cell([&](int row, int column) {
       const bool is_in_box = TemplateGrid::is_in_box(row) && TemplateGrid::is_in_box(column);

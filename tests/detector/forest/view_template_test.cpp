@@ -39,14 +39,14 @@ TEST(TemplateGrid, DepthIsRelativeToTheCentreInMillimetres) {
   EXPECT_EQ(grid.depth_mm(kRim, kRim), -10);
   EXPECT_EQ(grid.depth_mm(kRim, kSide - 1 - kRim), 10);
   EXPECT_EQ(grid.depth_mm(kSide - 1 - kRim, kSide - 1 - kRim), TemplateGrid::kNoDepth);
-  EXPECT_EQ(grid.depth_mm(0, 0), TemplateGrid::kBeside);
+  EXPECT_EQ(grid.depth_mm(0, 0), TemplateGrid::kNoObject);
 }
 
 TEST(TemplateGrid, TheRimKnowsTheNearestDepthOfTheObjectButNotBelow) {
   const TemplateGrid grid = square();
   EXPECT_EQ(beside(grid, 0, 6), -10);
   EXPECT_EQ(beside(grid, kSide - 1, 6), 10);
-  EXPECT_EQ(beside(grid, kRim, kRim), TemplateGrid::kBeside);  // on the object
+  EXPECT_EQ(beside(grid, kRim, kRim), TemplateGrid::kNoObject);  // on the object
   static_assert(TemplateGrid::kRimRows < kSide - kRim, "below there is none");
 }
 
@@ -57,7 +57,7 @@ TEST(TemplateGrid, TheOutlineIsCrossedAtBothEndsOfEachLine) {
   ASSERT_EQ(outline.count, 80U);
   for (const OutlineCells& across : outline.crossings) {
     const auto on = [&](const OutlineCells::Cell& at) {
-      return grid.depth_mm(at.row, at.column) != TemplateGrid::kBeside;
+      return grid.depth_mm(at.row, at.column) != TemplateGrid::kNoObject;
     };
     EXPECT_TRUE(on(across.inside));
     EXPECT_FALSE(on(across.beyond));
