@@ -22,7 +22,7 @@ ClassGroup group_by_class(const std::string& class_name, const std::vector<PoseO
 }
 
 std::vector<int> assign_poses(const ClassGroup& group, const AssociationSettings& settings) {
-  constexpr double kUnconfirmed = 0.3;  // extra cost of an unconfirmed track, so that confirmed ones are preferred
+  constexpr double kCandidateCost = 0.3;  // extra cost of an unconfirmed track, so that confirmed ones are preferred
   Eigen::MatrixXd costs(group.objects.size(), group.measured.size());
   for (std::size_t i = 0; i < group.objects.size(); ++i) {
     const Track& track = *group.objects[i];
@@ -32,7 +32,7 @@ std::vector<int> assign_poses(const ClassGroup& group, const AssociationSettings
       const double angle = track.pose.angle(group.measured[j]->measured, group.symmetries);
       costs(i, j) = distance > reach ? 10.0
                                      : distance / reach + settings.rotation_cost * angle / M_PI +
-                                           (track.id == 0 ? kUnconfirmed : 0.0);
+                                           (track.id == 0 ? kCandidateCost : 0.0);
     }
   }
   constexpr double kLimit = 2.0;

@@ -11,8 +11,8 @@ namespace houghstream::tracks {
 
 /// Settings of the assignment of measured poses to objects.
 struct AssociationSettings {
-  double reach_m = 0.06;         ///< distance up to which a pose is of a static object, metres
-  double moving_reach_m = 0.12;  ///< that distance for a moving object
+  double reach_m = 0.06;         ///< gating distance, metres: up to it a pose may be of a static object
+  double moving_reach_m = 0.12;  ///< gating distance of a moving object, metres
   double rotation_cost = 0.5;    ///< cost of a rotation by half a turn; that of the whole reach is 1
   double exclusion_ratio = 0.6;  ///< radii within which there is no second object of a class
 };

@@ -21,8 +21,8 @@ std::string find_same_object(const TrackModels& models, const TrackModel& model)
 }
 
 /// Returns the object at the pose that has the same number in the store and another name, which the store holds.
-const Track* find_namesake(const ObjectPose& pose, const Eigen::Isometry3d& T_world_camera, const TrackModels& models,
-                           const std::vector<Track>& tracks, double same_rotation_rad) {
+const Track* find_same_id(const ObjectPose& pose, const Eigen::Isometry3d& T_world_camera, const TrackModels& models,
+                          const std::vector<Track>& tracks, double same_rotation_rad) {
   const PoseMeasurement measured{0, T_world_camera * *pose.T_camera_object, Covariance6::Identity()};
   const auto found = std::find_if(tracks.begin(), tracks.end(), [&](const Track& track) {
     const auto model = models.find(track.class_name);
@@ -131,8 +131,8 @@ ObjectPoses ClassNames::resolve(const FrameObservation& observation, const Track
     const auto renamed = renamed_.find(pose.class_name);
     if (renamed != renamed_.end()) pose.class_name = renamed->second;
     if (!pose.T_camera_object || models.count(pose.class_name) > 0) continue;
-    const Track* namesake = find_namesake(pose, observation.T_world_camera, models, tracks, same_rotation_rad);
-    if (namesake != nullptr) pose.class_name = namesake->class_name;
+    const Track* object = find_same_id(pose, observation.T_world_camera, models, tracks, same_rotation_rad);
+    if (object != nullptr) pose.class_name = object->class_name;
   }
   return poses;
 }

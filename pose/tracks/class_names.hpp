@@ -32,9 +32,8 @@ void rename_tracks(const std::map<std::string, std::string>& renamed, const Trac
 /// Moves counts by class to the new names; of two that become one the larger stays.
 void rename_counts(const std::map<std::string, std::string>& renamed, std::map<std::string, int>& counts);
 
-/// Names of classes across changes of the object store. Detector and pose estimator take a change over a moment before
-/// or after the tracker does, so that results still name a class as it was called, or already as it will be. Not
-/// thread-safe.
+/// Translates class names across changes of the object store. Detector and pose estimator adopt a change a moment
+/// before or after the tracker, so that results may use the old or the new name. Not thread-safe.
 class ClassNames {
  public:
   /// Notes a change that has led to these models.

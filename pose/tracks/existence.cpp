@@ -6,12 +6,49 @@
 #include <string>
 
 #include "pipeline/base/log_line.hpp"
+#include "pose/seen/region.hpp"
+#include "pose/verification/verification.hpp"
 
 namespace houghstream::tracks {
 namespace {
 
+/// Holds the result of check_visibility().
+struct VisibilityCheck {
+  TrackState state = TrackState::kOutOfView;  ///< kUnrecognised: depth agrees; kGone: free-space violation
+  double free_space_violation = 0.0;          ///< fraction of what is not occluded, 0 to 1
+  bool is_boundary_continued = false;         ///< the measured surface continues beyond the object's outline
+};
+
+/// Renders the model at a pose and compares it with the depth of a frame.
+VisibilityCheck check_visibility(const RgbdFrame& frame, const TrackModel& model,
+                                 const Eigen::Isometry3d& T_camera_object) {
+  constexpr double kTolerance_m = 0.012;
+  constexpr double kMinDepth_m = 0.05;
+  constexpr int kMinPx = 30;
+  constexpr double kMinMeasured = 0.2;  // minimum fraction of the pixels with depth
+  constexpr double kMaxOccluded = 0.6;
+  constexpr double kMaxFreeSpaceViolation = 0.35;
+  const Eigen::Vector3d centre = T_camera_object * model.centre;
+  if (centre.z() < kMinDepth_m) return {};
+  const Eigen::Vector2d pixel = frame.camera.project(centre);
+  if (pixel.x() < 0.0 || pixel.y() < 0.0 || pixel.x() >= frame.camera.width || pixel.y() >= frame.camera.height)
+    return {};
+  const Verification verification = verify_pose(frame, model.mesh, T_camera_object, {kTolerance_m, DepthNoise{}});
+  const int compared = verification.depth_inliers + verification.free_space_violations + verification.occluded;
+  if (verification.rendered < kMinPx || compared < kMinMeasured * verification.rendered) return {};
+  VisibilityCheck visibility;
+  visibility.free_space_violation = static_cast<double>(verification.free_space_violations) /
+                                    std::max(1, verification.depth_inliers + verification.free_space_violations);
+  visibility.is_boundary_continued =
+      verification.boundary_continuations > 0.5F * static_cast<float>(verification.boundary_samples);
+  visibility.state = TrackState::kUnrecognised;
+  if (visibility.free_space_violation > kMaxFreeSpaceViolation) visibility.state = TrackState::kGone;
+  if (verification.occluded > kMaxOccluded * compared) visibility.state = TrackState::kHidden;
+  return visibility;
+}
+
 /// Returns whether an object of another class is recognised in its place.
-bool is_displaced(const UnobservedContext& context, const Track& track) {
+bool is_replaced(const UnobservedContext& context, const Track& track) {
   const Eigen::Vector3d centre = track.pose.filter().T_world_object() * centre_of(context.models, track.class_name);
   return std::any_of(context.poses.begin(), context.poses.end(), [&](const PoseObservation& pose) {
     return pose.class_name != track.class_name &&
@@ -43,7 +80,7 @@ void update_unobserved(const UnobservedContext& context, const AbsenceEvidence& 
   const VisibilityCheck visibility =
       image != nullptr ? check_visibility(*image, *model, T_camera_object) : VisibilityCheck{};
   const double unseen_s = seconds_between(track.last_seen.utime, observation.poses.frame.utime);
-  const bool displaced = is_displaced(context, track);
+  const bool replaced = is_replaced(context, track);
   const Eigen::Vector3d expected_centre =
       T_camera_object * (model != nullptr ? model->vote_centre : Eigen::Vector3d::Zero());
   const bool detected = is_detected(context, track.class_name, expected_centre);
@@ -69,8 +106,8 @@ void update_unobserved(const UnobservedContext& context, const AbsenceEvidence& 
         rate = visibility.is_boundary_continued ? settings.continuation_rate : detected ? 0.0 : settings.missed_rate;
       reason = fmt::format("not recognised by {}, whose depth agrees", observation.poses.frame.channel);
   }
-  if (displaced && visibility.state != TrackState::kOutOfView) {
-    if (absence.by_depth) rate += settings.displaced_rate;
+  if (replaced && visibility.state != TrackState::kOutOfView) {
+    if (absence.by_depth) rate += settings.replaced_rate;
     reason += ", where something else is";
   }
   if (track.pose.filter().moving() && unseen_s > context.coast_s) {
@@ -79,7 +116,7 @@ void update_unobserved(const UnobservedContext& context, const AbsenceEvidence& 
           visibility.state == TrackState::kHidden ? 0.25 * settings.moving_missed_rate : settings.moving_missed_rate;
     reason += "; it moved when it was seen last";
   }
-  if (track.id == 0 && absence.by_recognition) rate += settings.tentative_rate;
+  if (track.id == 0 && absence.by_recognition) rate += settings.candidate_rate;
   track.log_odds -= absence.dt_s * rate;
   // The last observer sets the state for a short time after its observation, where several cameras see the place.
   constexpr double kLastObserverHold_s = 0.1;

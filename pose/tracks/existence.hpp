@@ -13,16 +13,16 @@ struct ExistenceSettings {
   double prior = -1.5;               ///< log odds of an object at its first pose, before that pose counts
   double gain = 0.5;                 ///< factor of a pose's own log odds, at 30 Hz
   double max_log_odds = 6.0;         ///< limit, however often an object was observed
-  double confirm_log_odds = 2.2;     ///< log odds from which a candidate is published,
-  int min_frames = 3;                ///< if it was observed in at least so many frames
-  double min_duration_s = 0.08;      ///< over at least this time
+  double confirm_log_odds = 2.2;     ///< log odds from which a candidate is confirmed
+  int min_frames = 3;                ///< minimum number of frames with a pose for that
+  double min_duration_s = 0.08;      ///< minimum time between first and last pose for that, seconds
   double delete_log_odds = -1.0;     ///< log odds below which an object is gone
   double free_space_rate = 30.0;     ///< 1/s, where the camera sees through it
-  double displaced_rate = 12.0;      ///< 1/s, where another class is recognised in its place
+  double replaced_rate = 12.0;       ///< 1/s, where another class is recognised in its place
   double continuation_rate = 3.0;    ///< 1/s, where depth agrees, but the surface is larger than the object
   double missed_rate = 0.6;          ///< 1/s, where depth agrees, but nothing is recognised
   double moving_missed_rate = 14.0;  ///< 1/s, where it moved when it was observed last; a quarter of it while occluded
-  double tentative_rate = 4.0;       ///< 1/s, of a candidate that is not published yet and not observed
+  double candidate_rate = 4.0;       ///< 1/s, of a candidate that is not published yet and not observed
 };
 
 template <typename Visit>
@@ -36,11 +36,11 @@ void fields(const ExistenceSettings& /*settings*/, const Visit& visit) {
   visit(number("min_duration_s", &S::min_duration_s, 0, 3600, "s"));
   visit(number("delete_log_odds", &S::delete_log_odds, -100, 100));
   visit(number("free_space_rate", &S::free_space_rate, 0, 1e6, "1/s"));
-  visit(number("displaced_rate", &S::displaced_rate, 0, 1e6, "1/s"));
+  visit(number("displaced_rate", &S::replaced_rate, 0, 1e6, "1/s"));
   visit(number("continuation_rate", &S::continuation_rate, 0, 1e6, "1/s"));
   visit(number("missed_rate", &S::missed_rate, 0, 1e6, "1/s"));
   visit(number("moving_missed_rate", &S::moving_missed_rate, 0, 1e6, "1/s"));
-  visit(number("tentative_rate", &S::tentative_rate, 0, 1e6, "1/s"));
+  visit(number("tentative_rate", &S::candidate_rate, 0, 1e6, "1/s"));
 }
 
 /// Inputs for updating tracks without a pose in one result.

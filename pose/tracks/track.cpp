@@ -9,7 +9,6 @@
 #include "pose/model/symmetry.hpp"
 #include "pose/motion/pose_covariance.hpp"
 #include "pose/motion/twist.hpp"
-#include "pose/verification/verification.hpp"
 
 namespace houghstream::tracks {
 namespace {
@@ -49,9 +48,9 @@ Eigen::Vector3d centre_of(const TrackModels& models, const std::string& name) {
 }
 
 double radius_of(const TrackModels& models, const std::string& name) {
-  constexpr double kUsual = 0.07;
+  constexpr double kDefaultRadius_m = 0.07;
   const auto model = models.find(name);
-  return model == models.end() ? kUsual : model->second.box_radius_m;
+  return model == models.end() ? kDefaultRadius_m : model->second.box_radius_m;
 }
 
 const Symmetries& symmetries_of(const TrackModels& models, const std::string& name) {
@@ -95,33 +94,6 @@ std::vector<PoseObservation> observe_poses(const ObjectPoses& poses, const Eigen
         pose, T_world_camera, {centre_of(models, pose.class_name), radius_of(models, pose.class_name)});
   }
   return out;
-}
-
-VisibilityCheck check_visibility(const RgbdFrame& frame, const TrackModel& model,
-                                 const Eigen::Isometry3d& T_camera_object) {
-  constexpr double kTolerance_m = 0.012;
-  constexpr double kMinDepth_m = 0.05;
-  constexpr int kMinPx = 30;
-  constexpr double kMinMeasured = 0.2;  // minimum fraction of the pixels with depth
-  constexpr double kMaxOccluded = 0.6;
-  constexpr double kMaxFreeSpaceViolation = 0.35;
-  const Eigen::Vector3d centre = T_camera_object * model.centre;
-  if (centre.z() < kMinDepth_m) return {};
-  const Eigen::Vector2d pixel = frame.camera.project(centre);
-  if (pixel.x() < 0.0 || pixel.y() < 0.0 || pixel.x() >= frame.camera.width || pixel.y() >= frame.camera.height)
-    return {};
-  const Verification verification = verify_pose(frame, model.mesh, T_camera_object, {kTolerance_m, DepthNoise{}});
-  const int compared = verification.depth_inliers + verification.free_space_violations + verification.occluded;
-  if (verification.rendered < kMinPx || compared < kMinMeasured * verification.rendered) return {};
-  VisibilityCheck visibility;
-  visibility.free_space_violation = static_cast<double>(verification.free_space_violations) /
-                                    std::max(1, verification.depth_inliers + verification.free_space_violations);
-  visibility.is_boundary_continued =
-      verification.boundary_continuations > 0.5F * static_cast<float>(verification.boundary_samples);
-  visibility.state = TrackState::kUnrecognised;
-  if (visibility.free_space_violation > kMaxFreeSpaceViolation) visibility.state = TrackState::kGone;
-  if (verification.occluded > kMaxOccluded * compared) visibility.state = TrackState::kHidden;
-  return visibility;
 }
 
 PoseTrack::PoseTrack(const PoseObservation& first, const PoseTrackSettings& settings)
@@ -192,10 +164,10 @@ void PoseTrack::update_static(const PoseObservation& pose, bool has_contrary_dep
   constexpr std::size_t kMinRotations = 8;  // measurements whose rotation alone changed
   const Vector6 innovation =
       local_coordinates_about_world(pose.measured.T_world_object, hypothesis.filter.T_world_object());
-  const Covariance6& noise = pose.measured.covariance;
+  const Covariance6& covariance = pose.measured.covariance;
   const double place_gate =
-      std::max(settings_.static_gate_m, 4.0 * std::sqrt(noise.topLeftCorner<3, 3>().trace() / 3.0));
-  const double rotation_gate = std::max(settings_.static_gate_rad, 4.0 * std::sqrt(noise(5, 5)));
+      std::max(settings_.static_gate_m, 4.0 * std::sqrt(covariance.topLeftCorner<3, 3>().trace() / 3.0));
+  const double rotation_gate = std::max(settings_.static_gate_rad, 4.0 * std::sqrt(covariance(5, 5)));
   const bool is_in_place = innovation.head<3>().norm() < place_gate;
   ObserverHistory& observer = observers_[pose.frame.channel];
   if (is_in_place && innovation.tail<3>().norm() < rotation_gate) {
@@ -212,7 +184,7 @@ void PoseTrack::update_static(const PoseObservation& pose, bool has_contrary_dep
   const PoseMeasurement& first = observer.outside_gates.front();
   const double seconds = std::max(0.02, seconds_between(first.utime, pose.frame.utime));
   Vector6 motion = local_coordinates_about_world(pose.measured.T_world_object, first.T_world_object);
-  // The first may have been measured in the rotation of another hypothesis: between the two nothing has rotated.
+  // The first measurement may have been taken in another hypothesis' rotation. The object has not rotated then.
   if (motion.tail<3>().norm() > settings_.same_rotation_rad) motion.tail<3>().setZero();
   hypothesis.filter.start_moving(pose.measured, motion / seconds);
   recent_ = {pose.measured};
@@ -243,7 +215,8 @@ void PoseTrack::update_moving(const PoseMeasurement& measured, Hypothesis& hypot
   recent_.push_back(measured);
   while (seconds_between(recent_.front().utime, measured.utime) > kWindow_s) recent_.pop_front();
   if (recent_.size() < kMinPoses || seconds_between(recent_.front().utime, measured.utime) < kMinWindow_s) return;
-  // The mean of the earlier half beside that of the later one, each about the pose in its middle.
+  // Compares the mean of the earlier half with that of the later half; each is computed in the tangent space at the
+  // middle pose.
   const Eigen::Isometry3d& T_middle = recent_[recent_.size() / 2].T_world_object;
   std::array<Vector6, 2> means = {Vector6::Zero(), Vector6::Zero()};
   const std::size_t half = recent_.size() / 2;

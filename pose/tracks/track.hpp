@@ -83,18 +83,7 @@ std::vector<PoseObservation> observe_poses(const ObjectPoses& poses, const Eigen
 /// Returns the logit of a pose's quality, which is clamped to 0.02 and 0.98.
 double quality_logit(double quality);
 
-/// Holds the result of check_visibility().
-struct VisibilityCheck {
-  TrackState state = TrackState::kOutOfView;  ///< kUnrecognised: depth agrees; kGone: free-space violation
-  double free_space_violation = 0.0;          ///< fraction of what is not occluded, 0 to 1
-  bool is_boundary_continued = false;         ///< the measured surface continues beyond the object's outline
-};
-
-/// Renders the model at a pose and compares it with the depth of a frame.
-VisibilityCheck check_visibility(const RgbdFrame& frame, const TrackModel& model,
-                                 const Eigen::Isometry3d& T_camera_object);
-
-/// Gates of a pose track: which hypothesis a measured pose belongs to, and when the object begins to move or comes to
+/// Settings that decide which hypothesis a measured pose belongs to, and when an object starts to move or comes to
 /// rest.
 struct PoseTrackSettings {
   MotionSettings motion;
@@ -164,7 +153,8 @@ class PoseTrack {
 /// Holds an object, or a candidate for one.
 struct Track {
   PoseTrack pose;
-  std::int64_t id = 0;  ///< 0: not confirmed
+  /// 0: not confirmed; -1: to be removed, as its number went to another track or it is a duplicate.
+  std::int64_t id = 0;
   int class_id = 0;
   std::string class_name = {};
   double log_odds = 0.0;    ///< log odds of its existence

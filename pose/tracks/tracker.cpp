@@ -71,6 +71,7 @@ bool is_sequence_higher(const FrameNumber& before, const FrameNumber& after) {
 
 TimeOrder WorldClock::classify(const StampedFrame& frame) {
   constexpr int kMaxStaleResults = 30;  // consecutive results older than another camera's before a new world begins
+  // Frames that came later have earlier times: this camera's clock was set back after this frame was taken.
   if (seconds_between(frame.newest_utime, frame.id.utime) > kMaxOvertakenS) return TimeOrder::kLate;
   const std::int64_t utime = shifted(frame.id.utime, offset_us_);
   const auto known = cameras_.find(frame.id.channel);
@@ -80,6 +81,8 @@ TimeOrder WorldClock::classify(const StampedFrame& frame) {
   } else if (newest_ && classify_forward_jump(newest_->utime, frame, utime) == TimeOrder::kLate) {
     return TimeOrder::kLate;
   }
+  // Known or plausible by its own camera; now against the other cameras: 30 results in a row that are too old mean that
+  // the newest one's camera has ended.
   const std::int64_t now = shifted(frame.id.utime, offset_us_);
   if (!newest_ || seconds_between(now, newest_->utime) <= kMaxOvertakenS) return TimeOrder::kNext;
   ++stale_results_;
@@ -120,6 +123,7 @@ TimeOrder WorldClock::classify_backward_jump(const Camera& camera, const Stamped
           fmt::format("frame {} is {:.1f} s older than the last one, though its number is higher: the camera's clock "
                       "was set back, and the world goes on",
                       to_string(frame.id), seconds_between(utime, last_utime)));
+      // two frame intervals after the camera's last frame: the unconfirmed frame in between was skipped
       const std::int64_t apart_us = microseconds_between(std::min(first, utime), std::max(first, utime));
       set_offset(shifted(last_utime, 2 * std::min<std::int64_t>(apart_us, 1'000'000)), frame.id);
       return TimeOrder::kNext;
@@ -228,11 +232,11 @@ std::vector<PoseObservation> Tracker::associate(const std::vector<PoseObservatio
 void Tracker::update_track(Track& track, const PoseObservation& pose, double seconds) {
   constexpr double kReferenceRate_hz = 30.0;
   constexpr double kMax = 4.0;
-  const double frames = std::clamp(seconds * kReferenceRate_hz, 0.5, 1.5);
+  const double frames_at_30_hz = std::clamp(seconds * kReferenceRate_hz, 0.5, 1.5);
   track.pose.update(pose, symmetries_of(models_, track.class_name), track.free_space_violation_s > 0.0);
-  track.log_odds =
-      std::min(settings_.existence.max_log_odds,
-               track.log_odds + frames * settings_.existence.gain * std::clamp(quality_logit(pose.quality), 0.3, kMax));
+  track.log_odds = std::min(
+      settings_.existence.max_log_odds,
+      track.log_odds + frames_at_30_hz * settings_.existence.gain * std::clamp(quality_logit(pose.quality), 0.3, kMax));
   ++track.observed_frames;
   track.is_observed = true;
   track.free_space_violation_s = 0.0;
@@ -248,12 +252,13 @@ void Tracker::update_unobserved_tracks(const FrameObservation& observation, cons
   UnobservedContext context{observation, poses, models_};
   context.reach_m = settings_.association.reach_m;
   context.coast_s = settings_.pose.motion.coast_s;
+  const bool is_first_result = camera.results == 1;
   std::set<std::string> newly_missed;
   for (Track& track : tracks_) {
     if (!track.is_present() || track.is_observed) continue;
-    const AbsenceEvidence absence{camera.dt_s, camera.results == 1,
-                                  camera.missed.count(track.class_name) == 0 &&
-                                      searched_classes_.has_searched(observation.poses, track.class_name)};
+    const bool is_first_to_search = camera.missed.count(track.class_name) == 0 &&
+                                    searched_classes_.has_searched(observation.poses, track.class_name);
+    const AbsenceEvidence absence{camera.dt_s, is_first_result, is_first_to_search};
     if (absence.by_recognition) newly_missed.insert(track.class_name);
     if (absence.by_depth || absence.by_recognition) update_unobserved(context, absence, settings_.existence, track);
   }
@@ -282,30 +287,32 @@ void SearchedClasses::note(const ObjectPoses& poses) {
   Camera& camera = cameras_[poses.frame.channel];
   if (camera.utime != poses.frame.utime) camera.classes.clear();
   camera.utime = poses.frame.utime;
+  // Results without a class in common are of several detectors.
   if (!names.empty() && !camera.classes.empty() && !have_common(names, camera.classes)) camera.has_several = true;
   camera.classes.insert(names.begin(), names.end());
   for (const std::string& name : names) {
-    Coverage& coverage = coverage_[name];
-    if (coverage.classes.size() < kMax) coverage.classes.insert(names.begin(), names.end());
-    coverage.utime = std::max(coverage.utime, poses.frame.utime);
+    DetectorClasses& reported = reported_with_[name];
+    if (reported.classes.size() < kMax) reported.classes.insert(names.begin(), names.end());
+    reported.utime = std::max(reported.utime, poses.frame.utime);
   }
 }
 
 bool SearchedClasses::has_searched(const ObjectPoses& poses, const std::string& class_name) const {
   const auto camera = cameras_.find(poses.frame.channel);
   if (camera == cameras_.end() || !camera->second.has_several) return true;
-  const auto coverage = coverage_.find(class_name);
-  if (coverage == coverage_.end()) return true;
-  return have_common(reported_classes(poses), coverage->second.classes) || !is_reporting(class_name, poses.frame.utime);
+  const auto reported = reported_with_.find(class_name);
+  if (reported == reported_with_.end()) return true;
+  // It was searched by this result's detector, or its own detector has fallen silent.
+  return have_common(reported_classes(poses), reported->second.classes) || !is_reporting(class_name, poses.frame.utime);
 }
 
-/// Returns whether its detector has reported anything within the last second.
+/// Returns whether the detector of the class has reported anything within the last second.
 bool SearchedClasses::is_reporting(const std::string& class_name, std::int64_t utime) const {
   constexpr double kTimeout_s = 1.0;
-  const std::set<std::string>& classes = coverage_.at(class_name).classes;
+  const std::set<std::string>& classes = reported_with_.at(class_name).classes;
   return std::any_of(classes.begin(), classes.end(), [&](const std::string& name) {
-    const auto reported = coverage_.find(name);
-    return reported != coverage_.end() && seconds_between(reported->second.utime, utime) <= kTimeout_s;
+    const auto reported = reported_with_.find(name);
+    return reported != reported_with_.end() && seconds_between(reported->second.utime, utime) <= kTimeout_s;
   });
 }
 
@@ -338,7 +345,8 @@ bool Tracker::evict_oldest() {
   return true;
 }
 
-/// Candidates that have been observed enough become objects, or are found to be earlier ones.
+/// Gives each candidate that was observed enough a number: the one of the earlier object that it re-identifies, or a
+/// new one.
 void Tracker::confirm_tracks(std::int64_t utime) {
   const ExistenceSettings& existence = settings_.existence;
   for (Track& candidate : tracks_) {
@@ -379,6 +387,7 @@ Track* Tracker::find_reidentified(const Track& candidate, std::int64_t utime) {
     const bool is_available =
         !track.is_present() || has_left || (is_hand_occluded && visible <= max_instances_[candidate.class_name]);
     if (!is_available || track.last_seen.utime > candidate.last_seen.utime) continue;
+    // seconds unseen; objects that are gone cost 5 s more; a metre counts as a second
     const double cost =
         unseen_s + (track.is_present() ? 0.0 : 5.0) +
         track.pose.distance({utime, candidate.pose.filter().T_world_object(), Covariance6::Identity()},
@@ -406,8 +415,8 @@ void Tracker::forget_tracks(std::int64_t utime) {
 }
 
 void SearchedClasses::keep_only(const std::set<std::string>& classes) {
-  for (auto it = coverage_.begin(); it != coverage_.end();)
-    it = classes.count(it->first) > 0 ? std::next(it) : coverage_.erase(it);
+  for (auto it = reported_with_.begin(); it != reported_with_.end();)
+    it = classes.count(it->first) > 0 ? std::next(it) : reported_with_.erase(it);
 }
 
 /// Returns the objects that are published, with times of the frames' own clocks.

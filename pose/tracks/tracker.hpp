@@ -70,10 +70,11 @@ struct StampedFrame {
 class WorldClock {
  public:
   /// Classifies a result: it is used, skipped, or begins a new world. This may change the world's clock.
-  /// - Its time lies more than a second from its camera's last one: it is skipped until the next result, or one of
-  ///   another camera, confirms that time, since a single stamp may be wrong. A time that is ahead has then passed (at
-  ///   most a minute). Where it is behind and the frames' numbers rise, the camera's clock was set back and the world
-  ///   continues; else a new world begins, at once where the numbers show that the source was restarted.
+  /// - A time more than a second from the camera's last one is skipped until a second result, or of a time ahead
+  /// another
+  ///   camera, confirms it, since a single stamp may be wrong. Confirmed and ahead: the world's clock moves on, at most
+  ///   a minute. Confirmed and behind with rising numbers: the camera's clock was set back and the world continues.
+  ///   Otherwise a new world begins, at once where the source was restarted.
   /// - It is of an older frame of a camera that continues: it was only delayed, and is skipped.
   /// - It is more than a second older than another camera's last one, as with clocks that disagree: throws InputError.
   ///   After thirty of them in a row the other camera has ended, and the thirtieth begins a new world.
@@ -130,26 +131,26 @@ class SearchedClasses {
   void keep_only(const std::set<std::string>& classes);
 
  private:
-  struct Coverage {
+  struct DetectorClasses {
     std::set<std::string> classes;  // reported in one result with it
     std::int64_t utime = 0;         // time of the last result that reports it
   };
   struct Camera {
     std::int64_t utime = 0;         // time of the last frame
     std::set<std::string> classes;  // classes of its results
-    bool has_several = false;       // detectors work on its frames
+    bool has_several = false;       // whether several detectors work on its frames
   };
 
   bool is_reporting(const std::string& class_name, std::int64_t utime) const;
 
-  std::map<std::string, Coverage> coverage_;  // coverage by class name
-  std::map<std::string, Camera> cameras_;     // cameras by channel name
+  std::map<std::string, DetectorClasses> reported_with_;  // classes of a class's detector, by class name
+  std::map<std::string, Camera> cameras_;                 // cameras by channel name
 };
 
 /// Tracks the objects of a world over time and over all cameras. It assigns measured poses to objects (by class, place
 /// and rotation up to symmetries), estimates whether an object exists (Bayes; free space seen at its place counts
 /// against it, occluded and out of view does not unless it moved), estimates where it is (MotionFilter), and gives it a
-/// number.
+/// number (track_id).
 ///
 /// The result of a frame follows from the frames before, in their order, and from nothing else. Not thread-safe.
 class Tracker {
@@ -197,7 +198,7 @@ class Tracker {
   ClassNames names_;
   std::map<std::string, int> max_instances_;  // maximum number of instances in one frame, by class
   std::int64_t next_id_ = 1;
-  int world_number_ = 1;
+  int world_number_ = 1;     // number of the world: grows with each reset(), from which on ids begin at 1 again
   std::size_t refused_ = 0;  // poses of the last frame beyond max_objects
 };
 
