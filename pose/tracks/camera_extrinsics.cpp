@@ -26,100 +26,104 @@ bool are_equal_poses(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
 }
 
 Eigen::Isometry3d make_rigid_transform(const Eigen::Vector3d& translation, const Eigen::Vector4d& wxyz,
-                                       const std::string& of) {
+                                       const std::string& source) {
   constexpr double kUnitTolerance = 1e-2;  // written by people, with a few digits
   constexpr double kMaxDistanceM = 1e6;
   require(translation.allFinite() && translation.cwiseAbs().maxCoeff() <= kMaxDistanceM,
-          "{}: translation ({}, {}, {}), expected metres within {}", of, translation.x(), translation.y(),
+          "{}: translation ({}, {}, {}), expected metres within {}", source, translation.x(), translation.y(),
           translation.z(), kMaxDistanceM);
-  require(std::abs(wxyz.norm() - 1.0) < kUnitTolerance, "{}: quaternion of length {:.3f}, expected 1", of, wxyz.norm());
+  require(std::abs(wxyz.norm() - 1.0) < kUnitTolerance, "{}: quaternion of length {:.3f}, expected 1", source,
+          wxyz.norm());
   return Eigen::Translation3d(translation) * Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
 }
 
 /// Gives the pose of a camera, or of another frame, in its parent.
-struct Link {
+struct ParentTransform {
   std::string parent;
   Eigen::Isometry3d T_parent_child = Eigen::Isometry3d::Identity();
 };
-using Links = std::map<std::string, Link>;
+using ParentTransforms = std::map<std::string, ParentTransform>;
 
 template <int Count>
-Eigen::Matrix<double, Count, 1> read_numbers(const YAML::Node& node, const std::string& of) {
+Eigen::Matrix<double, Count, 1> read_numbers(const YAML::Node& node, const std::string& source) {
   Eigen::Matrix<double, Count, 1> out;
-  require(node.IsDefined() && node.IsSequence() && node.size() == Count, "{}: expected {} numbers", of, Count);
+  require(node.IsDefined() && node.IsSequence() && node.size() == Count, "{}: expected {} numbers", source, Count);
   for (int i = 0; i < Count; ++i) {
     const std::optional<double> number = yaml_number(node[i]);
-    require(number.has_value(), "{}: expected {} numbers", of, Count);
+    require(number.has_value(), "{}: expected {} numbers", source, Count);
     out[i] = *number;
   }
   return out;
 }
 
-double read_number(const YAML::Node& node, const char* key, const std::string& of) {
+double read_number(const YAML::Node& node, const char* key, const std::string& source) {
   const std::optional<double> number = yaml_number(yaml_member(node, key));
-  require(number.has_value(), "{}: no number {}", of, key);
+  require(number.has_value(), "{}: no number {}", source, key);
   return *number;
 }
 
-/// Entries with a damaged or duplicate name would be ignored silently.
-void require_names(const YAML::Node& map, const std::set<std::string>& known, const std::string& of) {
-  for (const std::string& name : yaml_names(map, of))
-    require(known.count(name) > 0, "{}: '{}', expected one of {}", of, printable(name), fmt::join(known, ", "));
+/// Throws InputError for a name that is not `known`: an entry under a damaged or duplicate name would be ignored
+/// silently.
+void require_names(const YAML::Node& map, const std::set<std::string>& known, const std::string& source) {
+  for (const std::string& name : yaml_names(map, source))
+    require(known.count(name) > 0, "{}: '{}', expected one of {}", source, printable(name), fmt::join(known, ", "));
 }
 
-void add_cameras(const YAML::Node& cameras, const std::string& file, Links& links) {
+void add_cameras(const YAML::Node& cameras, const std::string& file, ParentTransforms& parents) {
   for (const auto& entry : cameras) {
     require(entry.first.IsScalar(), "{}: a camera whose name is no text", file);
     const std::string& name = entry.first.Scalar();
     const YAML::Node& node = entry.second;
-    const std::string of = fmt::format("{}: camera {}", file, printable(name));
-    require(links.count(name) == 0, "{}: duplicate camera {}", file, printable(name));
-    require(node.IsMap(), "{}: expected translation and rotation", of);
+    const std::string source = fmt::format("{}: camera {}", file, printable(name));
+    require(parents.count(name) == 0, "{}: duplicate camera {}", file, printable(name));
+    require(node.IsMap(), "{}: expected translation and rotation", source);
     const YAML::Node parent = yaml_member(node, "parent");
-    links[name] = {parent.IsDefined() && parent.IsScalar() ? parent.Scalar() : "world",
-                   make_rigid_transform(read_numbers<3>(yaml_member(node, "translation"), of + ": translation"),
-                                        read_numbers<4>(yaml_member(node, "rotation"), of + ": rotation"), of)};
-    require_names(node, {"parent", "translation", "rotation"}, of);
+    parents[name] = {
+        parent.IsDefined() && parent.IsScalar() ? parent.Scalar() : "world",
+        make_rigid_transform(read_numbers<3>(yaml_member(node, "translation"), source + ": translation"),
+                             read_numbers<4>(yaml_member(node, "rotation"), source + ": rotation"), source)};
+    require_names(node, {"parent", "translation", "rotation"}, source);
   }
 }
 
-void add_transforms(const YAML::Node& transforms, const std::string& file, Links& links) {
+void add_transforms(const YAML::Node& transforms, const std::string& file, ParentTransforms& parents) {
   for (const auto& node : transforms) {
     const YAML::Node child = yaml_member(node, "child_frame_id");
     const YAML::Node parent = yaml_member(yaml_member(node, "header"), "frame_id");
     require(child.IsDefined() && child.IsScalar() && parent.IsDefined() && parent.IsScalar(),
             "{}: a transform without header.frame_id and child_frame_id", file);
-    const std::string of = fmt::format("{}: frame {}", file, printable(child.Scalar()));
+    const std::string source = fmt::format("{}: frame {}", file, printable(child.Scalar()));
     const YAML::Node t = yaml_member(yaml_member(node, "transform"), "translation");
     const YAML::Node q = yaml_member(yaml_member(node, "transform"), "rotation");
-    links[child.Scalar()] = {
+    parents[child.Scalar()] = {
         parent.Scalar(),
-        make_rigid_transform(
-            {read_number(t, "x", of), read_number(t, "y", of), read_number(t, "z", of)},
-            {read_number(q, "w", of), read_number(q, "x", of), read_number(q, "y", of), read_number(q, "z", of)}, of)};
+        make_rigid_transform({read_number(t, "x", source), read_number(t, "y", source), read_number(t, "z", source)},
+                             {read_number(q, "w", source), read_number(q, "x", source), read_number(q, "y", source),
+                              read_number(q, "z", source)},
+                             source)};
   }
 }
 
-Links read_links(const YAML::Node& yaml, const std::string& file) {
-  Links links;
+ParentTransforms read_parent_transforms(const YAML::Node& yaml, const std::string& file) {
+  ParentTransforms parents;
   const YAML::Node cameras = yaml_member(yaml, "cameras");
   const YAML::Node transforms = yaml_member(yaml, "transforms");
   // Entries of a list have no name.
   require((!cameras.IsDefined() || cameras.IsMap()) && (!transforms.IsDefined() || transforms.IsSequence()),
           "{}: expected 'cameras:' with names, or a list of 'transforms:'", file);
-  if (cameras.IsDefined()) add_cameras(cameras, file, links);
-  if (transforms.IsDefined()) add_transforms(transforms, file, links);
-  if (!links.empty()) require_names(yaml, {"cameras", "transforms"}, file);
-  return links;
+  if (cameras.IsDefined()) add_cameras(cameras, file, parents);
+  if (transforms.IsDefined()) add_transforms(transforms, file, parents);
+  if (!parents.empty()) require_names(yaml, {"cameras", "transforms"}, file);
+  return parents;
 }
 
-Eigen::Isometry3d chain_to_root(const Links& links, const std::string& camera, const std::string& file) {
+Eigen::Isometry3d chain_to_root(const ParentTransforms& parents, const std::string& camera, const std::string& file) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   std::set<std::string> visited;
-  for (auto link = links.find(camera); link != links.end(); link = links.find(link->second.parent)) {
-    require(visited.insert(link->first).second, "{}: camera {}: its parents go round in a loop through {}", file,
-            camera, link->first);
-    T = link->second.T_parent_child * T;
+  for (auto child = parents.find(camera); child != parents.end(); child = parents.find(child->second.parent)) {
+    require(visited.insert(child->first).second, "{}: camera {}: its parents go round in a loop through {}", file,
+            camera, child->first);
+    T = child->second.T_parent_child * T;
   }
   return T;
 }
@@ -177,13 +181,13 @@ CameraPose CameraExtrinsics::interpolate(const std::string& camera, std::int64_t
 
 std::map<std::string, Eigen::Isometry3d> read_camera_extrinsics(const std::filesystem::path& file) {
   constexpr std::size_t kMaxFrames = 1024;  // each may hang on all others
-  const Links links =
-      read_links(parse_yaml(read_file(file, "a YAML file of camera poses"), file.string()), file.string());
-  require(!links.empty(), "{}: neither 'cameras:' nor 'transforms:', expected poses of cameras", file.string());
-  require(links.size() <= kMaxFrames, "{}: poses of {} frames, expected at most {}", file.string(), links.size(),
+  const ParentTransforms parents =
+      read_parent_transforms(parse_yaml(read_file(file, "a YAML file of camera poses"), file.string()), file.string());
+  require(!parents.empty(), "{}: neither 'cameras:' nor 'transforms:', expected poses of cameras", file.string());
+  require(parents.size() <= kMaxFrames, "{}: poses of {} frames, expected at most {}", file.string(), parents.size(),
           kMaxFrames);
   std::map<std::string, Eigen::Isometry3d> poses;
-  for (const auto& [camera, link] : links) poses[camera] = chain_to_root(links, camera, file.string());
+  for (const auto& [camera, transform] : parents) poses[camera] = chain_to_root(parents, camera, file.string());
   return poses;
 }
 

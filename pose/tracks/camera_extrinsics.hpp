@@ -56,10 +56,10 @@ class CameraExtrinsics {
 ///     cameras:
 ///       LEFT: {parent: world, translation: [x, y, z], rotation: [w, x, y, z]}
 ///
-/// (parent may be another camera; without it the world), and static transforms of ROS as `ros2 topic echo /tf_static`
-/// prints them: entries of `transforms` with header.frame_id, child_frame_id and transform, chained to the root frame,
-/// which is the world. Metres. Throws InputError naming file and camera for what is missing, not rigid, part of a loop,
-/// of an unknown name, or a duplicate.
+/// where `parent` may be another camera, and defaults to the world. It also understands static transforms of ROS, as
+/// `ros2 topic echo /tf_static` prints them: entries of `transforms` with header.frame_id, child_frame_id and
+/// transform, chained to the root frame, which is the world. Metres. Throws InputError naming file and camera for what
+/// is missing, not rigid, part of a loop, of an unknown name, or a duplicate.
 std::map<std::string, Eigen::Isometry3d> read_camera_extrinsics(const std::filesystem::path& file);
 
 /// Parses the value of an option --camera-pose: CHANNEL=x,y,z,qw,qx,qy,qz, T_world_camera. Throws InputError.
