@@ -121,11 +121,11 @@ bool fit_normal(const FrameLevel& level, int x, int y, Eigen::Vector3f& normal) 
   return true;
 }
 
-/// Finds the pixel of a square with depth and the strongest intensity gradient.
-bool strongest_pixel(const FrameLevel& level, const cv::Rect& square, const cv::Mat& mask, cv::Point& best) {
+/// Finds the pixel of a grid cell with depth and the strongest intensity gradient.
+bool strongest_pixel(const FrameLevel& level, const cv::Rect& cell, const cv::Mat& mask, cv::Point& best) {
   float strongest = -1.0F;
-  for (int y = square.y; y < square.br().y; ++y) {
-    for (int x = square.x; x < square.br().x; ++x) {
+  for (int y = cell.y; y < cell.br().y; ++y) {
+    for (int x = cell.x; x < cell.br().x; ++x) {
       if (!(level.depth.at<float>(y, x) > 0.0F) || (!mask.empty() && mask.at<std::uint8_t>(y, x) == 0)) continue;
       const float gx = level.intensity.at<float>(y, x + 1) - level.intensity.at<float>(y, x - 1);
       const float gy = level.intensity.at<float>(y + 1, x) - level.intensity.at<float>(y - 1, x);
@@ -138,13 +138,13 @@ bool strongest_pixel(const FrameLevel& level, const cv::Rect& square, const cv::
   return strongest >= 0.0F;
 }
 
-std::vector<SurfacePoint> points_of(const FrameLevel& level, const cv::Mat& mask, int square_px, double min_facing) {
+std::vector<SurfacePoint> points_of(const FrameLevel& level, const cv::Mat& mask, int cell_px, double min_facing) {
   constexpr int kBorder_px = 4;
   std::vector<SurfacePoint> points;
-  for (int y = kBorder_px; y + square_px <= level.depth.rows - kBorder_px; y += square_px) {
-    for (int x = kBorder_px; x + square_px <= level.depth.cols - kBorder_px; x += square_px) {
+  for (int y = kBorder_px; y + cell_px <= level.depth.rows - kBorder_px; y += cell_px) {
+    for (int x = kBorder_px; x + cell_px <= level.depth.cols - kBorder_px; x += cell_px) {
       cv::Point px;
-      if (!strongest_pixel(level, {x, y, square_px, square_px}, mask, px)) continue;
+      if (!strongest_pixel(level, {x, y, cell_px, cell_px}, mask, px)) continue;
       SurfacePoint point;
       if (!fit_normal(level, px.x, px.y, point.normal)) continue;
       point.point = level.camera.backproject(px.x, px.y, level.depth.at<float>(px)).cast<float>();
@@ -187,13 +187,12 @@ FrameLevels make_levels(const RgbdFrame& frame, const LevelSettings& settings) {
 LevelPoints choose_points(const FrameLevels& frame, const cv::Mat& mask, const PointSettings& settings) {
   LevelPoints points;
   cv::Mat at_level = mask;
-  double square = settings.square_px;
+  double cell = settings.cell_px;
   for (const FrameLevel& level : frame.levels) {
     if (!mask.empty() && at_level.size() != level.depth.size())
       cv::resize(mask, at_level, level.depth.size(), 0, 0, cv::INTER_NEAREST);
-    points.push_back(
-        points_of(level, at_level, std::max(2, static_cast<int>(std::lround(square))), settings.min_facing));
-    square *= 0.75;
+    points.push_back(points_of(level, at_level, std::max(2, static_cast<int>(std::lround(cell))), settings.min_facing));
+    cell *= 0.75;
   }
   return points;
 }

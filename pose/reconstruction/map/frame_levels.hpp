@@ -11,8 +11,9 @@ namespace houghstream::reconstruction {
 /// Holds a frame at one resolution.
 struct FrameLevel {
   Camera camera;
-  cv::Mat intensity;    ///< CV_32FC1, brightness less the mean around, in deviations around: the same at any exposure
-  cv::Mat depth;        ///< CV_32FC1, metres, NaN = none
+  cv::Mat intensity;  ///< CV_32FC1, brightness minus its local mean, over its local standard deviation: independent of
+                      ///< exposure
+  cv::Mat depth;      ///< CV_32FC1, metres, NaN = none
   cv::Mat static_mask;  ///< CV_8UC1, 255 where the intensity is not informative, as it stayed while the object rotated;
                         ///< empty = nowhere
 };
@@ -21,10 +22,10 @@ struct FrameLevel {
 struct ImageQuality {
   double sharpness = 0.0;        ///< mean square of the Laplacian over the mean square of the brightness' deviation
   double dark_fraction = 0.0;    ///< pixels that are black
-  double bright_fraction = 0.0;  ///< pixels that are burnt out
+  double bright_fraction = 0.0;  ///< pixels that are overexposed
 };
 
-/// A frame from fine to coarse, as registration needs it.
+/// Holds the image pyramid of a frame that registration needs.
 struct FrameLevels {
   std::vector<FrameLevel> levels;  ///< the finest first, each half as large as the one before
   ImageQuality quality;
@@ -50,10 +51,10 @@ struct SurfacePoint {
 /// Points of each level, finest first.
 using LevelPoints = std::vector<std::vector<SurfacePoint>>;
 
-/// Settings of the selection of points: in each square of pixels the one with the strongest intensity gradient, of
-/// those with depth and a normal.
+/// Settings of the selection of points: in each cell of a grid of pixels the one with the strongest intensity gradient,
+/// of those with depth and a normal.
 struct PointSettings {
-  int square_px = 6;        ///< side on the finest level; 3/4 of it on the next, and so on
+  int cell_px = 6;          ///< side of a cell on the finest level; 3/4 of it on the next, and so on
   double min_facing = 0.2;  ///< cosine between normal and line of sight
 };
 

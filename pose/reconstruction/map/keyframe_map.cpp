@@ -30,7 +30,7 @@ double KeyframeMap::view_angle(const Eigen::Isometry3d& a, const Eigen::Isometry
   return std::acos(cosine) + std::abs(std::log(from_a.norm() / from_b.norm()));
 }
 
-bool KeyframeMap::is_good(const Alignment& alignment) const {
+bool KeyframeMap::is_accepted(const Alignment& alignment) const {
   return alignment.pairs >= 100 && alignment.inlier_fraction >= settings_.min_inlier_fraction &&
          alignment.visible_point_fraction >= settings_.min_visible_fraction &&
          alignment.photometric_rms <= settings_.max_photometric_rms;
@@ -51,7 +51,7 @@ int KeyframeMap::nearest(const Eigen::Isometry3d& T_camera_world) const {
 std::vector<int> KeyframeMap::find_local_keyframes(const Eigen::Isometry3d& T_camera_world) const {
   std::vector<std::pair<double, int>> ranked;
   for (std::size_t k = 0; k < keyframes_.size(); ++k) {
-    if (graph_distances_[k] < 0 || graph_distances_[k] > settings_.loop_steps) continue;
+    if (graph_distances_[k] < 0 || graph_distances_[k] > settings_.min_loop_edges) continue;
     ranked.emplace_back(view_angle(T_camera_world, keyframes_[k].T_camera_world), static_cast<int>(k));
   }
   std::sort(ranked.begin(), ranked.end());
@@ -153,7 +153,7 @@ Alignment KeyframeMap::register_to_submap(const Submap& submap, const FrameLevel
   if (!settings_.use_landmarks) {
     const PoseConstraints plane{settings_.plane, {}};
     Alignment found = align_frame(submap.points, levels, T_predicted, plane, alignment);
-    if (is_good(found) || !limits.may_be_lost || maximum == 0) return found;
+    if (is_accepted(found) || !limits.may_be_lost || maximum == 0) return found;
     return align_frame(submap.points, levels, T_by_landmarks, plane, alignment);
   }
   const bool is_contradicted = 2 * static_cast<std::size_t>(contradicting) > constraints.landmarks.size();
@@ -167,7 +167,7 @@ Alignment KeyframeMap::constrain_by_landmarks(const FrameLevels& levels, const L
   std::vector<LandmarkReobservation> reobservations;
   if (settings_.use_landmarks) reobservations = match_keyframes(local_.keyframes, landmarks);
   const Alignment constrained = register_to_submap(local_, levels, reobservations, alignment.T_camera_world, {});
-  return is_good(constrained) ? constrained : alignment;
+  return is_accepted(constrained) ? constrained : alignment;
 }
 
 std::optional<LoopClosureError> KeyframeMap::close_loop(int last) {
@@ -177,7 +177,7 @@ std::optional<LoopClosureError> KeyframeMap::close_loop(int last) {
   std::vector<std::pair<double, int>> candidates;
   for (int k = 0; k < last; ++k) {
     const double d = view_angle(latest.T_camera_world, keyframes_[static_cast<std::size_t>(k)].T_camera_world);
-    if (graph_distances_[static_cast<std::size_t>(k)] > settings_.loop_steps && d < settings_.max_loop_angle)
+    if (graph_distances_[static_cast<std::size_t>(k)] > settings_.min_loop_edges && d < settings_.max_loop_angle)
       candidates.emplace_back(d, k);
   }
   std::sort(candidates.begin(), candidates.end());
@@ -188,7 +188,7 @@ std::optional<LoopClosureError> KeyframeMap::close_loop(int last) {
     const Alignment found = register_to_submap(make_submap({k}), latest.levels, reobservations, latest.T_camera_world,
                                                {settings_.coarsest, true});
     const LoopClosureError loop_error = loop_error_between(latest.T_camera_world, found.T_camera_world);
-    if (!is_good(found) || loop_error.shift_m > kMaxShift_m) continue;
+    if (!is_accepted(found) || loop_error.shift_m > kMaxShift_m) continue;
     edges_.push_back({k, last, found.T_camera_world * candidate.T_camera_world.inverse(), found.information});
     return loop_error;
   }
@@ -224,7 +224,7 @@ std::vector<PoseEdge> KeyframeMap::edges_from(int from, int coarsest,
     if (is_new && settings_.use_landmarks) landmarks->second = match_keyframes(single.keyframes, to.landmarks);
     const Alignment alignment =
         register_to_submap(single, to.levels, landmarks->second, to.T_camera_world, {coarsest, false});
-    if (is_good(alignment))
+    if (is_accepted(alignment))
       edges.push_back({from, j, alignment.T_camera_world * keyframe.T_camera_world.inverse(), alignment.information});
   }
   return edges;
@@ -240,7 +240,8 @@ void KeyframeMap::refine(int rounds) {
       found[at] = edges_from(i, round == 0 ? 1 : 0, reobservations[at]);
     });
     std::vector<PoseEdge> edges = edges_;
-    for (PoseEdge& edge : edges) edge.information *= 0.05;  // keep together what has no other tie
+    // These are weak edges that keep together keyframes without any other edge.
+    for (PoseEdge& edge : edges) edge.information *= 0.05;
     for (const auto& keyframe_edges : found) edges.insert(edges.end(), keyframe_edges.begin(), keyframe_edges.end());
     std::vector<Eigen::Isometry3d> poses = poses_of(keyframes_);
     optimise_pose_graph(edges, poses);

@@ -11,7 +11,7 @@ namespace houghstream::reconstruction {
 /// Holds a frame of the map.
 struct Keyframe {
   RgbdFrame frame;
-  int number = 0;  ///< number of the frame in its take, from 0
+  int number = 0;  ///< number of the frame in its take, from 0 (a take: a recording of one object from many sides)
   FrameLevels levels;
   LevelPoints points;  ///< camera frame
   Landmarks landmarks;
@@ -28,7 +28,7 @@ struct LoopClosureError {
 struct MapSettings {
   double max_local_angle = 0.44;  ///< radians between views: a keyframe of the local map
   double max_loop_angle = 0.35;   ///< radians between views: a loop may be closed
-  int loop_steps = 8;             ///< keyframes in between that make a loop
+  int min_loop_edges = 8;         ///< a loop is closed only with keyframes more than this many edges away in the graph
   int local_keyframes = 3;        ///< keyframes of the local map
   double min_inlier_fraction = 0.75;
   double min_visible_fraction = 0.25;
@@ -84,7 +84,7 @@ class KeyframeMap {
                                    const Alignment& alignment) const;
 
   /// Returns whether an alignment is accepted.
-  bool is_good(const Alignment& alignment) const;
+  bool is_accepted(const Alignment& alignment) const;
   /// Returns the angle between two views of the object, plus their difference in distance expressed as an angle,
   /// radians.
   double view_angle(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) const;
@@ -104,7 +104,7 @@ class KeyframeMap {
   Submap make_submap(std::vector<int> keyframes) const;
   std::vector<LandmarkReobservation> match_keyframes(const std::vector<int>& keyframes,
                                                      const Landmarks& landmarks) const;
-  Alignment register_to_submap(const Submap& part, const FrameLevels& levels,
+  Alignment register_to_submap(const Submap& submap, const FrameLevels& levels,
                                const std::vector<LandmarkReobservation>& reobservations,
                                const Eigen::Isometry3d& T_predicted, const RegistrationLimits& limits) const;
   std::vector<PoseEdge> edges_from(int from, int coarsest,

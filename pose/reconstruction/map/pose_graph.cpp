@@ -22,7 +22,9 @@ double robust_weight(const Vector6& error) {
 
 void optimise_pose_graph(const std::vector<PoseEdge>& edges, std::vector<Eigen::Isometry3d>& T_camera_world) {
   constexpr int kIterations = 12;
-  constexpr int kUnweightedIterations = 4;  // first everything counts: a long loop's gap is no error of an edge
+  // The first iterations are unweighted: before the loop's error is spread, the closing edge would look like an
+  // outlier.
+  constexpr int kUnweightedIterations = 4;
   constexpr double kConvergence = 1e-6;
   const auto n = static_cast<Eigen::Index>(T_camera_world.size());
   for (int iteration = 0; iteration < kIterations; ++iteration) {

@@ -72,7 +72,8 @@ double free_space_violation(const Mesh& mesh, const Take& take, const std::vecto
     const cv::Mat model = render_depth(mesh, view.T_camera_object, frame.camera, whole);
     // The nearest depth about a pixel is compared, since the outline may be one pixel off.
     cv::Mat nearest = frame.depth.clone();
-    nearest.setTo(0.0F, ~(nearest == nearest));  // vectorised, != may call two NaN equal
+    // OpenCV's vectorised != may treat two NaN as equal; == does not.
+    nearest.setTo(0.0F, ~(nearest == nearest));
     cv::erode(nearest, nearest, cv::Mat());
     Count& count = counts[static_cast<std::size_t>(i)];
     for (int y = 0; y < model.rows; ++y) {

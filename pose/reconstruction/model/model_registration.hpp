@@ -19,9 +19,10 @@ struct ModelRegistration {
   double median_m = 0.0;  ///< median distance of b's observed surface from a's, where both were observed
 };
 
-/// Registers model b to model a of the same object: from rotations all round, or about z alone where both stand
-/// `upright`, by point-to-plane registration under Tukey's weights (Chen & Medioni 1992). Distance and colour select
-/// the best result. Returns nothing where none is within 4 mm. The same input gives the same result.
+/// Registers model b to model a of the same object: starting from rotations spread over all directions, or about z
+/// alone where both stand `upright`, by point-to-plane registration under Tukey's weights (Chen & Medioni 1992).
+/// Distance and colour select the best result. Returns nothing where none is within 4 mm. The same input gives the same
+/// result.
 std::optional<ModelRegistration> register_models(const PartialModel& a, const PartialModel& b, bool upright,
                                                  int threads);
 

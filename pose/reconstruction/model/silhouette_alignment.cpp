@@ -27,7 +27,8 @@ double iou_at(const cv::Mat& outline, const cv::Mat& mask, const cv::Point& shif
   return either > 0 ? static_cast<double>(both) / either : 0.0;
 }
 
-/// Returns the shift of the model's outline that fits best, nearest to none among equals.
+/// Returns the shift of the model's outline that fits best. It climbs from no shift in steps of a pixel, and of equal
+/// shifts keeps the first.
 cv::Point best_shift(const cv::Mat& outline, const cv::Mat& mask) {
   cv::Point best;
   double maximum = iou_at(outline, mask, best);

@@ -260,7 +260,7 @@ ReconstructedModel reconstruct_model(const Take& take, const ReconstructionSetti
   for (MaskedKeyframe& view : masked) {
     if (cv::countNonZero(view.mask) > 0) model.views.push_back(std::move(view));
   }
-  model.agreement_m = surface_deviation(model.mesh, {{&take, &model.views}}, settings.threads);
+  model.deviation_m = surface_deviation(model.mesh, {{&take, &model.views}}, settings.threads);
   model.free_space_violation = free_space_violation(model.mesh, take, model.views, settings.threads);
   return model;
 }
@@ -268,12 +268,12 @@ ReconstructedModel reconstruct_model(const Take& take, const ReconstructionSetti
 namespace {
 
 /// Crops a view to the model, in the form for fusion.
-fusion::DepthView crop_depth_view(const TrainingView& view, const Mesh& known, bool whole_image) {
+fusion::DepthView crop_depth_view(const TrainingView& view, const Mesh& prior_mesh, bool whole_image) {
   constexpr int kMargin_px = 14;
   constexpr int kUnsure_px = 2;
   const Camera& camera = view.frame.camera;
   const cv::Rect whole(0, 0, camera.width, camera.height);
-  const cv::Mat model = render_depth(known, view.T_camera_object, camera, whole);
+  const cv::Mat model = render_depth(prior_mesh, view.T_camera_object, camera, whole);
   cv::Mat outline = model == model;
   outline |= view.mask;
   cv::Rect region = cv::boundingRect(outline);
@@ -350,7 +350,7 @@ void register_views(std::vector<TrainingView>& views, int threads) {
   LevelSettings levels;
   levels.levels = 2;
   PointSettings points;
-  points.square_px = 3;
+  points.cell_px = 3;
   parallel_for(threads, static_cast<int>(views.size()), [&](int i) {
     const TrainingView& view = views[static_cast<std::size_t>(i)];
     Keyframe& keyframe = keyframes[static_cast<std::size_t>(i)];
@@ -365,16 +365,16 @@ void register_views(std::vector<TrainingView>& views, int threads) {
   for (std::size_t i = 0; i < views.size(); ++i) views[i].T_camera_object = map.keyframes()[i].T_camera_world;
 }
 
-FusedSurface fuse_masked_views(const std::string& name, const MaskedViews& views, const Mesh& known,
+FusedSurface fuse_masked_views(const std::string& name, const MaskedViews& views, const Mesh& prior_mesh,
                                std::optional<double> foot_m, const ReconstructionSettings& settings) {
   std::vector<fusion::DepthView> depth_views(views.views.size());
   parallel_for(settings.threads, static_cast<int>(depth_views.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
-    depth_views[at] = crop_depth_view(views.views[at], known, views.whole_images);
+    depth_views[at] = crop_depth_view(views.views[at], prior_mesh, views.whole_images);
     if (!views.lighting_ids.empty()) depth_views[at].lighting_id = views.lighting_ids[at];
   });
   fusion::TsdfSettings tsdf_settings;
-  const Eigen::AlignedBox3d bounds = mesh_bounds(known).cast<double>();
+  const Eigen::AlignedBox3d bounds = mesh_bounds(prior_mesh).cast<double>();
   tsdf_settings.voxel = bounds.diagonal().norm() > 0.3 ? 2.0 * settings.voxel_m : settings.voxel_m;
   tsdf_settings.min_fraction = 0.02;
   tsdf_settings.outline_weight = 0.3;
@@ -424,9 +424,9 @@ bool merge_takes(const Take& first, ReconstructedModel& model, const Take& secon
                                       view.T_camera_object);
     });
   }
-  model.agreement_m =
+  model.deviation_m =
       surface_deviation(model.mesh, {{&first, &model.views}, {&second, &other.views}}, settings.threads);
-  other.agreement_m = model.agreement_m;
+  other.deviation_m = model.deviation_m;
   return true;
 }
 

@@ -16,7 +16,7 @@ struct ReconstructedModel {
   std::vector<bool> seen;  ///< per vertex: some view shows it; the others close the surface
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();  ///< world: of the take
   std::vector<MaskedKeyframe> views;                                 ///< keyframes that show it, in their order
-  double agreement_m = 0.0;           ///< surface_deviation() over all views of the model, metres
+  double deviation_m = 0.0;           ///< surface_deviation() over all views of the model, metres
   double free_space_violation = 0.0;  ///< see free_space_violation()
 };
 
@@ -35,7 +35,7 @@ struct ReconstructionSettings {
 ReconstructedModel reconstruct_model(const Take& take, const ReconstructionSettings& settings);
 
 /// Returns DepthView::lighting_id of the take's keyframes: `number` where the camera moved and the lighting was static
-/// relative to the object.
+/// relative to the object, and -1 where the object moved.
 int lighting_of(const Take& take, int number);
 
 /// Surface that was fused from views of one object.
@@ -51,10 +51,10 @@ struct MaskedViews {
   bool whole_images = false;      ///< false: crops of larger images, which continue around them
 };
 
-/// Fuses masked views from all sides (Curless & Levoy 1996). Occluders in a view, within the outline of `known`, are
-/// ignored; space beside that outline is free, but beside whole images nothing is known. Where `foot_m` is set, the
+/// Fuses masked views from all sides (Curless & Levoy 1996). Occluders in a view, within the outline of `prior_mesh`,
+/// are ignored; space beside that outline is free, but beside whole images nothing is known. Where `foot_m` is set, the
 /// object ends there, since no view shows it from below. Throws InputError naming `name` where nothing is left.
-FusedSurface fuse_masked_views(const std::string& name, const MaskedViews& views, const Mesh& known,
+FusedSurface fuse_masked_views(const std::string& name, const MaskedViews& views, const Mesh& prior_mesh,
                                std::optional<double> foot_m, const ReconstructionSettings& settings);
 
 /// Registers views of an object to one another, by their masks' pixels alone, from poses that are nearly right, and
@@ -64,7 +64,8 @@ void register_views(std::vector<TrainingView>& views, int threads);
 /// Adds a mesh's triangles to another one's.
 void append_mesh(const Mesh& mesh, const Eigen::Isometry3d& T_to_from, Mesh& to);
 
-/// Returns the middle of the lowest part, on its height.
+/// Returns the centre of the lowest centimetre of the mesh, at the height of its lowest vertex. Foot: the part with
+/// which the object stands on the table.
 Eigen::Vector3d foot_of(const Mesh& mesh);
 
 /// Returns the keyframes of a take as views of its object.
@@ -72,7 +73,7 @@ std::vector<TrainingView> training_views(const Take& take, const std::vector<Mas
                                          const std::string& name);
 
 /// Registers the second take's model to the first and fuses both into one, in the first one's frame; the views of both
-/// get poses and masks of it, and agreement_m is that of all of them. Returns false where the second does not fit, or
+/// get poses and masks of it, and deviation_m is that of all of them. Returns false where the second does not fit, or
 /// the fused model violates free space (kMaxFreeSpaceViolation): then nothing is changed.
 bool merge_takes(const Take& first, ReconstructedModel& model, const Take& second, ReconstructedModel& other,
                  const ReconstructionSettings& settings);

@@ -23,13 +23,14 @@ cv::Point2d target_pixel(const RgbdFrame& frame, const SelectionSettings& settin
 }
 
 /// Returns the cluster of the target; 0 = none.
-int find_target_cluster(const Clusters& clusters, const RgbdFrame& frame, const SelectionSettings& settings) {
+int find_target_cluster(const std::vector<Cluster>& clusters, const RgbdFrame& frame,
+                        const SelectionSettings& settings) {
   constexpr int kMinPixels = 60;
   constexpr double kMaxFoot_m = 0.035;
   int best = 0;
   double best_rank = 1e18;
-  for (std::size_t i = 1; i < clusters.list.size(); ++i) {
-    const Cluster& cluster = clusters.list[i];
+  for (std::size_t i = 1; i < clusters.size(); ++i) {
+    const Cluster& cluster = clusters[i];
     if (cluster.pixels < kMinPixels || cluster.lowest > kMaxFoot_m) continue;
     if (!settings.box_px && cluster.target_distance_px > settings.max_fraction * frame.depth.cols) continue;
     const double rank = settings.box_px ? -cluster.pixels : cluster.target_distance_px - 1e-6 * cluster.pixels;
@@ -57,10 +58,10 @@ std::string find_fault(const SelectedObject& object, const RgbdFrame& frame, con
 }
 
 SelectedObject describe_cluster(const RgbdFrame& frame, const Plane& plane, const PlaneAxes& axes,
-                                const Clusters& clusters, int selected) {
-  const Cluster& cluster = clusters.list[static_cast<std::size_t>(selected)];
+                                const Clusters& found, int selected) {
+  const Cluster& cluster = found.clusters[static_cast<std::size_t>(selected)];
   SelectedObject object;
-  object.mask = clusters.of_pixel == selected;
+  object.mask = found.labels == selected;
   object.box_px = cv::boundingRect(object.mask);
   constexpr double kMinSkinFraction = 0.15;
   object.is_skin_coloured =
@@ -89,9 +90,9 @@ bool is_level(const RgbdFrame& frame, const Plane& plane, int x, int y) {
   return normal.allFinite() && std::abs(normal.normalized().dot(plane.normal())) > kCosine;
 }
 
-/// Returns the plane that carries a smaller object, since a cluster may be an object on a disc, a book or a box lid: a
-/// wide horizontal surface.
-std::optional<Plane> find_carrier_plane(const RgbdFrame& frame, const SelectedObject& object) {
+/// Returns the top of a disc, book or lid on which the object stands: a wide horizontal surface below a narrower part.
+/// Nothing where the cluster has none.
+std::optional<Plane> find_raised_support(const RgbdFrame& frame, const SelectedObject& object) {
   constexpr double kBin_m = 0.002;
   constexpr double kMax_m = 0.06;
   constexpr double kAbove_m = 0.012;
@@ -148,14 +149,14 @@ ObjectSelection select_on_plane(const RgbdFrame& frame, const Plane& plane, cons
   const cv::Point2d target = target_pixel(frame, settings);
   const PlaneAxes axes(plane, frame.camera.backproject(target.x, target.y, 1.0));
   const cv::Rect whole({0, 0}, frame.depth.size());
-  const Clusters clusters =
+  const Clusters found =
       find_clusters(frame, plane, axes, {settings.box_px.value_or(whole) & whole, target, settings.max_distance_m});
-  const int selected = find_target_cluster(clusters, frame, settings);
+  const int selected = find_target_cluster(found.clusters, frame, settings);
   if (selected == 0) return {{}, describe_absence(settings)};
-  SelectedObject object = describe_cluster(frame, plane, axes, clusters, selected);
+  SelectedObject object = describe_cluster(frame, plane, axes, found, selected);
   object.has_given_box = settings.box_px.has_value();
-  if (const std::optional<Plane> carrier = find_carrier_plane(frame, object)) {
-    if (ObjectSelection carried = select_on_plane(frame, *carrier, settings); carried.object) return carried;
+  if (const std::optional<Plane> raised_support = find_raised_support(frame, object)) {
+    if (ObjectSelection raised = select_on_plane(frame, *raised_support, settings); raised.object) return raised;
   }
   std::string fault = find_fault(object, frame, settings);
   if (!fault.empty()) return {{}, std::move(fault)};

@@ -13,12 +13,13 @@ namespace houghstream::reconstruction {
 
 /// Describes the selected object.
 struct SelectedObject {
-  Plane plane{Eigen::Vector3d::UnitZ(), 0.0};                        ///< plane on which it stands
-  Eigen::Isometry3d T_camera_stand = Eigen::Isometry3d::Identity();  ///< origin on the plane below its middle, z up
-  double radius_m = 0.0;                                             ///< radius of its visible part about that axis
-  double height_m = 0.0;                                             ///< above the plane
-  cv::Mat mask;                                                      ///< CV_8UC1, 255 on it, size of the frame
-  cv::Rect box_px;                                                   ///< bounding box of the mask
+  Plane plane{Eigen::Vector3d::UnitZ(), 0.0};  ///< plane on which it stands
+  /// Stand: the frame whose origin is on the plane below the object's middle, z up.
+  Eigen::Isometry3d T_camera_stand = Eigen::Isometry3d::Identity();
+  double radius_m = 0.0;          ///< radius of its visible part about that axis
+  double height_m = 0.0;          ///< above the plane
+  cv::Mat mask;                   ///< CV_8UC1, 255 on it, size of the frame
+  cv::Rect box_px;                ///< bounding box of the mask
   bool is_skin_coloured = false;  ///< true if its colour does not distinguish it from a hand
   bool has_given_box = false;     ///< a person has drawn its box: parts that touch it beyond do not belong to it
 };

@@ -14,7 +14,7 @@ namespace {
 constexpr double kHalfExtent_m = 0.8;  // half the side of the searched part of the plane
 
 /// Returns the cell of the plane below each pixel above it; (-1,-1) for the others.
-cv::Mat cells_of_pixels(const RgbdFrame& frame, const Plane& plane, const PlaneAxes& axes, const SearchedPart& searched,
+cv::Mat cells_of_pixels(const RgbdFrame& frame, const Plane& plane, const PlaneAxes& axes, const SearchRegion& searched,
                         cv::Mat& grid) {
   constexpr double kMin_m = 0.006;  // lower points are taken for the plane
   constexpr double kMax_m = 0.75;
@@ -64,21 +64,21 @@ int PlaneAxes::cells() {
 }
 
 Clusters find_clusters(const RgbdFrame& frame, const Plane& plane, const PlaneAxes& axes,
-                       const SearchedPart& searched) {
-  cv::Mat grid, joined, labels;
+                       const SearchRegion& searched) {
+  cv::Mat grid, joined, cell_labels;
   const cv::Mat cells = cells_of_pixels(frame, plane, axes, searched, grid);
   cv::dilate(grid, joined, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
-  Clusters clusters;
-  clusters.list.resize(static_cast<std::size_t>(cv::connectedComponents(joined, labels, 8, CV_32S)));
-  clusters.of_pixel = cv::Mat::zeros(frame.depth.size(), CV_32SC1);
+  Clusters found;
+  found.clusters.resize(static_cast<std::size_t>(cv::connectedComponents(joined, cell_labels, 8, CV_32S)));
+  found.labels = cv::Mat::zeros(frame.depth.size(), CV_32SC1);
   const cv::Point2d& target = searched.target_px;
   for (int y = 0; y < cells.rows; ++y) {
     for (int x = 0; x < cells.cols; ++x) {
       const auto& cell = cells.at<cv::Vec2i>(y, x);
       if (cell[0] < 0) continue;
-      const int label = labels.at<int>(cell[1], cell[0]);
-      clusters.of_pixel.at<int>(y, x) = label;
-      Cluster& cluster = clusters.list[static_cast<std::size_t>(label)];
+      const int label = cell_labels.at<int>(cell[1], cell[0]);
+      found.labels.at<int>(y, x) = label;
+      Cluster& cluster = found.clusters[static_cast<std::size_t>(label)];
       const double height = plane.signedDistance(frame.camera.backproject(x, y, frame.depth.at<float>(y, x)));
       ++cluster.pixels;
       cluster.lowest = std::min(cluster.lowest, height);
@@ -88,7 +88,7 @@ Clusters find_clusters(const RgbdFrame& frame, const Plane& plane, const PlaneAx
           cluster.cells.empty() ? cv::Rect(cell[0], cell[1], 1, 1) : cluster.cells | cv::Rect(cell[0], cell[1], 1, 1);
     }
   }
-  return clusters;
+  return found;
 }
 
 }  // namespace houghstream::reconstruction

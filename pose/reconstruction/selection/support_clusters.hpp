@@ -35,18 +35,18 @@ struct Cluster {
 };
 
 struct Clusters {
-  cv::Mat of_pixel;           ///< CV_32SC1, size of the frame; 0 = none
-  std::vector<Cluster> list;  ///< the first is none
+  cv::Mat labels;                 ///< cluster of each pixel, an index into `clusters`; CV_32SC1, size of the frame
+  std::vector<Cluster> clusters;  ///< the first stands for none
 };
 
 /// Region of an image that is searched.
-struct SearchedPart {
+struct SearchRegion {
   cv::Rect region_px;           ///< within the image
   cv::Point2d target_px;        ///< pixel on or near the object that is to be selected
   double max_distance_m = 0.0;  ///< maximum distance from the camera
 };
 
 /// Finds clusters of points above a plane.
-Clusters find_clusters(const RgbdFrame& frame, const Plane& plane, const PlaneAxes& axes, const SearchedPart& searched);
+Clusters find_clusters(const RgbdFrame& frame, const Plane& plane, const PlaneAxes& axes, const SearchRegion& searched);
 
 }  // namespace houghstream::reconstruction

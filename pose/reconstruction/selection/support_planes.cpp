@@ -36,8 +36,8 @@ double precision_at(const Eigen::Vector3d& point) {
   return 1.0 / (depth_sigma(point.z()) * depth_sigma(point.z()));
 }
 
-/// Returns whether a plane may carry objects: a camera held upright looks down on a table, or straight down.
-bool may_carry(const Plane& plane) {
+/// Returns whether a plane can support objects: a camera held upright looks down on a table, or straight down.
+bool can_support(const Plane& plane) {
   return plane.offset() > 0.08 && (-plane.normal().y() > 0.2 || -plane.normal().z() > 0.8);
 }
 
@@ -58,7 +58,7 @@ std::vector<Plane> find_planes(const RgbdFrame& frame, double max_distance_m, st
       if (inliers.size() < min_count) return planes;
       plane = fit_plane(inliers, precision_at);
     }
-    if (may_carry(*plane)) planes.push_back(*plane);
+    if (can_support(*plane)) planes.push_back(*plane);
     points.erase(std::remove_if(points.begin(), points.end(),
                                 [&](const Eigen::Vector3d& p) {
                                   return plane->absDistance(p) < 2.0 * plane_distance_limit(p.z());

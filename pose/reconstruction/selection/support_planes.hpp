@@ -10,9 +10,9 @@
 
 namespace houghstream::reconstruction {
 
-/// Returns planes on which objects may stand, the largest first, camera frame, metres: found at random (plane_fit) in
-/// the depth up to `max_distance_m`, refined by least squares; only those that face upwards or the camera. The same
-/// input and seed give the same result.
+/// Returns planes on which objects may stand, the largest first, camera frame, metres: found by RANSAC
+/// (find_largest_plane) in the depth up to `max_distance_m`, refined by least squares; only those that face upwards or
+/// the camera. The same input and seed give the same result.
 std::vector<Plane> find_planes(const RgbdFrame& frame, double max_distance_m, std::uint64_t seed);
 
 /// Returns the plane nearest to the measured points that are close to it, of those pixels where `mask` (CV_8UC1, may be

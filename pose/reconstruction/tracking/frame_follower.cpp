@@ -42,8 +42,9 @@ std::optional<Alignment> FrameFollower::follow(const FlowFrame& flow_frame, cons
                                       : is_extrapolation_better ? T_extrapolated
                                                                 : T_last;
   Alignment best = register_to_map(levels, T_initial, coarsest, map);
-  // Stripes and tiles repeat: what suddenly agrees less has slipped by one.
-  if (!map.is_good(best) || best.photometric_rms > 1.4 * mean_photometric_rms_ + 0.03) {
+  // Stripes and tiles repeat: if the photometric error grows suddenly, the pose has slipped by a period, and other
+  // starts are tried.
+  if (!map.is_accepted(best) || best.photometric_rms > 1.4 * mean_photometric_rms_ + 0.03) {
     const Eigen::Isometry3d& T_alternative = is_extrapolation_better ? T_last : T_extrapolated;
     for (const Alignment& other :
          {register_to_map(levels, T_initial, 0, map), register_to_map(levels, T_alternative, coarsest, map),
@@ -55,7 +56,7 @@ std::optional<Alignment> FrameFollower::follow(const FlowFrame& flow_frame, cons
       std::min(kMaxRotation_rad + 2.0 * map.view_angle(T_last, step.T_before), kMaxMovingRotation_rad);
   const double shift = (T_last.inverse() * best.T_camera_world).translation().norm();
   const bool too_far = motion == Motion::kObject && shift > kMaxShift_m;
-  if (!map.is_good(best) || too_far || map.view_angle(T_last, best.T_camera_world) > maximum) return std::nullopt;
+  if (!map.is_accepted(best) || too_far || map.view_angle(T_last, best.T_camera_world) > maximum) return std::nullopt;
   mean_photometric_rms_ += 0.2 * (best.photometric_rms - mean_photometric_rms_);
   return best;
 }

@@ -19,9 +19,9 @@ class FrameFollower {
 
   /// Returns the next frame's pose T_camera_world, predicted from that of the frame before by the camera's motion of
   /// the tracked corners, or by repetition of its last motion; none where registration fails or the pose would have
-  /// jumped. While the object rotates (`motion`), `now` is empty.
-  std::optional<Alignment> follow(const FlowFrame& now, const FrameLevels& levels, const LastStep& step, Motion motion,
-                                  KeyframeMap& map);
+  /// jumped. While the object rotates (`motion`), `flow_frame` is empty.
+  std::optional<Alignment> follow(const FlowFrame& flow_frame, const FrameLevels& levels, const LastStep& step,
+                                  Motion motion, KeyframeMap& map);
 
  private:
   Alignment register_to_map(const FrameLevels& levels, const Eigen::Isometry3d& T_start, int coarsest,

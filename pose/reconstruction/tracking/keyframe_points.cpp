@@ -33,7 +33,8 @@ void remove_free_space_violations(const Keyframe& keyframe, const KeyframeMap& m
   cv::erode(mask, mask, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
 }
 
-/// Takes out of a mask what has the colour of skin, with what is around; `colour` shows the same in any size.
+/// Takes out of a mask what has the colour of skin, with what is around. `colour` shows the same region, possibly at
+/// another size.
 void remove_skin(const cv::Mat& colour, cv::Mat& mask) {
   cv::Mat skin;
   cv::dilate(skin_pixels(colour), skin, cv::getStructuringElement(cv::MORPH_ELLIPSE, {7, 7}));
@@ -81,7 +82,7 @@ LevelPoints points_of_object(const Keyframe& keyframe, const KeyframeMap& map, c
   remove_free_space_violations(keyframe, map, mask);
   if (!object.is_skin_coloured) remove_skin(keyframe.frame.colour(region_px), mask);
   PointSettings points;
-  points.square_px = 4;
+  points.cell_px = 4;
   return choose_points(keyframe.levels, mask, points);
 }
 

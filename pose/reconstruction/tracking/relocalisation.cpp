@@ -10,7 +10,7 @@ namespace {
 /// Minimum fraction of inliers: a plane with texture on it may agree with a wrong pose by half.
 constexpr double kSureInliers = 0.85;
 
-/// Returns differences from a view, and keyframes, the nearest first.
+/// Returns pairs of view angle and keyframe, the nearest first.
 std::vector<std::pair<double, int>> keyframes_by_distance(const KeyframeMap& map,
                                                           const Eigen::Isometry3d& T_camera_world) {
   const std::vector<Keyframe>& keyframes = map.keyframes();
@@ -27,7 +27,7 @@ std::optional<Alignment> register_to_keyframe(const KeyframeMap& map, int keyfra
   AlignmentLimits limits;
   limits.coarsest = map.settings().coarsest;
   Alignment found = align_frame(map.points_of({keyframe}), levels, T_start, {map.settings().plane, {}}, limits);
-  if (!map.is_good(found) || found.inlier_fraction <= kSureInliers) return std::nullopt;
+  if (!map.is_accepted(found) || found.inlier_fraction <= kSureInliers) return std::nullopt;
   return found;
 }
 
@@ -65,7 +65,7 @@ std::optional<Alignment> Relocaliser::find(const KeyframeMap& map, const FrameLe
   LandmarkCache::KeyframeMatch best;
   int best_keyframe = -1;
   for (std::size_t i = 0; i < std::min(tried, by_distance.size()); ++i) {
-    // The nearest half, and the others in turn.
+    // Half of the tries take the nearest keyframes, the rest the others in turn.
     const std::size_t at = i < tried / 2 ? i : next_to_try_++ % by_distance.size();
     const int k = by_distance[at].second;
     const LandmarkCache::KeyframeMatch& match = match_keyframe(map, k, cache);

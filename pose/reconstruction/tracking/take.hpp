@@ -39,9 +39,9 @@ struct Take {
   std::vector<Keyframe> keyframes;
   std::vector<RegisteredFrame> frames;
   std::vector<LostSpan> lost;
-  std::optional<LoopClosureError> gap;  ///< error of the loop around the object, before it was closed
+  std::optional<LoopClosureError> loop_error;  ///< error of the loop around the object, before it was closed
   ViewCoverage seen{};
-  int degrees_round = 0;               ///< part of a full turn from which it was seen, 0 to 360
+  int covered_degrees = 0;             ///< part of a full turn from which it was seen, 0 to 360
   int blurred = 0, badly_exposed = 0;  ///< frames
   double tracking_hz = 0.0;            ///< frames a second that tracking alone takes
 

@@ -88,7 +88,7 @@ void TakeMapper::initialise(const RgbdFrame& frame) {
   FrameLevels levels = make_levels(frame, levels_);
   step_.restart(selected_.T_camera_stand);
   state_.state = TakeMapperState::kTracking;
-  covered_directions_.assign(36, false);
+  covered_sectors_.assign(36, false);
   motion_classifier_ = MotionClassifier(make_flow_frame(frame), levels,
                                         object_pixels(levels.levels[0], selected_, selected_.T_camera_stand),
                                         selected_.T_camera_stand, settings_.map.min_landmarks);
@@ -133,7 +133,7 @@ void TakeMapper::follow_object_only() {
                                box.height + 2 * margin.height) &
                       cv::Rect({0, 0}, first.depth.size());
   map_ = KeyframeMap(map);
-  tie_to_first_keyframe();
+  express_relative_to_first_keyframe();
   state_.seen = {};
   step_.restart(selected_.T_camera_stand);
   Keyframe keyframe;
@@ -145,10 +145,10 @@ void TakeMapper::follow_object_only() {
   add_keyframe(std::move(keyframe), {});
 }
 
-/// Ties the frames before to the first keyframe: they were tied to keyframes of the surroundings, and the map now holds
-/// the first frame alone. All of them show the object as that one does. It already moved in the last of them by an
-/// unknown distance.
-void TakeMapper::tie_to_first_keyframe() {
+/// Expresses the earlier frames relative to the first keyframe: they referred to keyframes of the surroundings, which
+/// the new map does not hold. All of them show the object as that one does. The last few stay unregistered, since the
+/// object already moved in them.
+void TakeMapper::express_relative_to_first_keyframe() {
   int moved =
       motion_classifier_.moving_object_frames() - 1;  // the last is the present frame, which is not registered yet
   for (auto frame = take_.frames.rbegin(); frame != take_.frames.rend(); ++frame) {
@@ -187,7 +187,7 @@ void TakeMapper::register_frame(int number, const RgbdFrame& frame, FrameLevels 
     Keyframe keyframe;
     keyframe.landmarks = detect_landmarks(frame, landmark_mask(frame, step_.T_last));
     Alignment constrained = alignment;
-    if (nearest >= 0) map_.local_map(step_.T_last);  // the keyframes that the new one is tied to
+    if (nearest >= 0) map_.local_map(step_.T_last);  // the keyframes to which edges will connect the new one
     if (nearest >= 0 && map_.settings().use_landmarks) {
       constrained = map_.constrain_by_landmarks(levels, keyframe.landmarks, alignment);
       step_.correct(constrained.T_camera_world);
@@ -205,7 +205,7 @@ void TakeMapper::register_frame(int number, const RgbdFrame& frame, FrameLevels 
   const Eigen::Vector3d towards = step_.T_last.inverse().translation() - map_.settings().middle;
   if (is_usable) mark_covered(towards, state_.seen);
   const auto at = static_cast<std::size_t>((std::atan2(towards.y(), towards.x()) * kDegrees + 360.0) / 10.0) % 36;
-  covered_directions_[at] = covered_directions_[at] || is_usable;
+  covered_sectors_[at] = covered_sectors_[at] || is_usable;
 }
 
 /// Returns the mask in which landmarks are detected: everywhere while the camera moves, else on the object, which may
@@ -219,12 +219,12 @@ cv::Mat TakeMapper::landmark_mask(const RgbdFrame& frame, const Eigen::Isometry3
 void TakeMapper::add_keyframe(Keyframe keyframe, const Alignment& alignment) {
   keyframe.points = motion_ == Motion::kObject ? points_of_object(keyframe, map_, selected_, levels_.region_px)
                                                : points_of_scene(keyframe);
-  const std::optional<LoopClosureError> gap = map_.add(std::move(keyframe), alignment);
-  if (!gap) return;
+  const std::optional<LoopClosureError> loop_error = map_.add(std::move(keyframe), alignment);
+  if (!loop_error) return;
   step_.restart(map_.keyframes().back().T_camera_world);
-  const auto covered_sectors = std::count(covered_directions_.begin(), covered_directions_.end(), true);
-  constexpr int kNearlyRound = 30;  // number of the 36 sectors
-  if (covered_sectors >= kNearlyRound && !take_.gap) take_.gap = gap;
+  const auto covered_sectors = std::count(covered_sectors_.begin(), covered_sectors_.end(), true);
+  constexpr int kMinLoopSectors = 30;  // number of the 36 sectors
+  if (covered_sectors >= kMinLoopSectors && !take_.loop_error) take_.loop_error = loop_error;
 }
 
 void TakeMapper::note_lost(const FrameLevels& levels) {
@@ -268,7 +268,7 @@ Take TakeMapper::finish() {
   take_.motion = motion_;
   take_.keyframes = std::move(map_.keyframes());
   take_.seen = state_.seen;
-  take_.degrees_round = static_cast<int>(10 * std::count(covered_directions_.begin(), covered_directions_.end(), true));
+  take_.covered_degrees = static_cast<int>(10 * std::count(covered_sectors_.begin(), covered_sectors_.end(), true));
   take_.tracking_hz = seconds_ > 0.0 ? static_cast<double>(take_.frames.size()) / seconds_ : 0.0;
   return std::move(take_);
 }

@@ -60,7 +60,7 @@ class TakeMapper {
   void initialise(const RgbdFrame& frame);
   bool is_usable_for_model(const ImageQuality& quality);
   void follow_object_only();
-  void tie_to_first_keyframe();
+  void express_relative_to_first_keyframe();
   std::optional<Alignment> relocalise(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere,
                                       LandmarkCache& cache);
   void register_frame(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment);
@@ -86,7 +86,7 @@ class TakeMapper {
   Relocaliser relocaliser_;
   std::deque<double> sharpness_;
   Take take_;
-  std::vector<bool> covered_directions_;  ///< each ten degrees of the turn
+  std::vector<bool> covered_sectors_;  ///< for each ten degrees of the turn, whether it was observed
   double seconds_ = 0.0;
 };
 

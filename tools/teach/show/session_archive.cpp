@@ -66,9 +66,9 @@ OrderedJson report_json(const ShowResult& shown, const ModelAssessment& assessme
     hz = std::min(hz, take.tracking_hz);
     for (const LostSpan& span : take.lost)
       lost.push_back({{"from", second_of(take, span.from)}, {"to", second_of(take, span.to)}, {"why", span.why}});
-    if (!take.gap) continue;  // the worst of several takes counts
-    drift_mm = std::max(1e3 * take.gap->shift_m, drift_mm.is_null() ? 0.0 : drift_mm.get<double>());
-    drift_deg = std::max(degrees_of(*take.gap), drift_deg.is_null() ? 0.0 : drift_deg.get<double>());
+    if (!take.loop_error) continue;  // the worst of several takes counts
+    drift_mm = std::max(1e3 * take.loop_error->shift_m, drift_mm.is_null() ? 0.0 : drift_mm.get<double>());
+    drift_deg = std::max(degrees_of(*take.loop_error), drift_deg.is_null() ? 0.0 : drift_deg.get<double>());
   }
   json["name"] = shown.name;
   json["verdict"] = assessment.good ? "good" : "poor";
@@ -80,13 +80,13 @@ OrderedJson report_json(const ShowResult& shown, const ModelAssessment& assessme
   json["tracking_hz"] = hz;
   json["drift_mm"] = drift_mm;
   json["drift_deg"] = drift_deg;
-  json["agreement_mm"] = 1e3 * shown.agreement_m;
+  json["agreement_mm"] = 1e3 * shown.deviation_m;
   json["seen_through"] = shown.free_space_violation;
   json["outline_overlap"] = shown.silhouette_iou ? OrderedJson(*shown.silhouette_iou) : OrderedJson();
   json["seen_share"] =
       static_cast<double>(reconstruction::count_covered(seen_by_all(shown))) / reconstruction::kSphereDirections;
   json["seen_surface"] = shown.seen_surface;
-  json["degrees_round"] = shown.takes.front().degrees_round;
+  json["degrees_round"] = shown.takes.front().covered_degrees;
   json["lost"] = lost;
   json["diameter_mm"] = 1e3 * mesh_diameter(shown.mesh);
   return json;

@@ -224,7 +224,7 @@ ShowResult show_takes(const ShowOptions& options, const ShownFrames& frames, con
   shown.views.insert(shown.views.begin(), std::move(model.views));
   shown.seen_surface = covered_fraction(model.seen);
   shown.mesh = fusion::remove_unobserved(model.mesh, model.seen, making_of(options).foot_m);
-  shown.agreement_m = model.agreement_m;
+  shown.deviation_m = model.deviation_m;
   shown.free_space_violation = model.free_space_violation;
   shown.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return shown;

@@ -42,10 +42,10 @@ void assess_take(const Take& take, std::vector<std::string>& reasons) {
     reasons.emplace_back(
         "neither the camera nor the object was seen to move, expected a turn about it (a plain round "
         "object that turns by itself looks as if it stood still)");
-  if (take.degrees_round < kNearlyRound)
-    reasons.push_back(fmt::format("too short: seen from {} degrees of the turn, expected all 360{}", take.degrees_round,
-                                  unused_frames(take)));
-  else if (take.degrees_round >= kRound && !take.gap)
+  if (take.covered_degrees < kNearlyRound)
+    reasons.push_back(fmt::format("too short: seen from {} degrees of the turn, expected all 360{}",
+                                  take.covered_degrees, unused_frames(take)));
+  else if (take.covered_degrees >= kRound && !take.loop_error)
     reasons.emplace_back(
         "it came round, and did not find its beginning again: nothing tells how it turned, or the way was lost");
   if (lost_frames(take) > kMaxLost * static_cast<double>(take.frames.size())) {
@@ -53,9 +53,9 @@ void assess_take(const Take& take, std::vector<std::string>& reasons) {
       if (reasons.size() < 8) reasons.push_back(span_text(take, span));
     }
   }
-  if (take.gap && (take.gap->shift_m > kMaxGap_m || take.gap->angle_rad > kMaxGapAngle))
+  if (take.loop_error && (take.loop_error->shift_m > kMaxGap_m || take.loop_error->angle_rad > kMaxGapAngle))
     reasons.push_back(fmt::format("the turn missed its beginning by {:.0f} mm and {:.1f} degrees",
-                                  1e3 * take.gap->shift_m, degrees_of(*take.gap)));
+                                  1e3 * take.loop_error->shift_m, degrees_of(*take.loop_error)));
 }
 
 /// Adds the objections to each of the takes.
@@ -91,9 +91,9 @@ std::string describe_take(const Take& take) {
       take.frames.size(), second_of(take, static_cast<int>(take.frames.size()) - 1), tracked_frames(take),
       take.keyframes.size(), take.blurred, take.badly_exposed, what_moved(take.motion), take.tracking_hz);
   for (const LostSpan& span : take.lost) text += "  " + span_text(take, span) + "\n";
-  text += take.gap
+  text += take.loop_error
               ? fmt::format("  the turn's end missed its beginning by {:.1f} mm and {:.2f} degrees, and was closed\n",
-                            1e3 * take.gap->shift_m, degrees_of(*take.gap))
+                            1e3 * take.loop_error->shift_m, degrees_of(*take.loop_error))
               : "  the turn was not closed\n";
   return text;
 }
@@ -117,9 +117,9 @@ reconstruction::ViewCoverage seen_by_all(const ShowResult& shown) {
   return coverage;
 }
 
-double degrees_of(const reconstruction::LoopClosureError& gap) {
+double degrees_of(const reconstruction::LoopClosureError& loop_error) {
   constexpr double kDegrees = 57.29577951308232;
-  return kDegrees * gap.angle_rad;
+  return kDegrees * loop_error.angle_rad;
 }
 
 double covered_fraction(const std::vector<bool>& seen) {
@@ -128,14 +128,14 @@ double covered_fraction(const std::vector<bool>& seen) {
 }
 
 ModelAssessment assess_model(const ShowResult& shown) {
-  constexpr double kMaxDisagreement_m = 0.003;
+  constexpr double kMaxDeviation_m = 0.003;
   constexpr double kMinSurface = 0.55;
   constexpr double kMinOverlap = 0.9;
   ModelAssessment assessment;
   assess_takes(shown, assessment.reasons);
-  if (shown.agreement_m > kMaxDisagreement_m)
+  if (shown.deviation_m > kMaxDeviation_m)
     assessment.reasons.push_back(fmt::format("the views disagree by {:.1f} mm, expected less than {:.0f}",
-                                             1e3 * shown.agreement_m, 1e3 * kMaxDisagreement_m));
+                                             1e3 * shown.deviation_m, 1e3 * kMaxDeviation_m));
   if (shown.silhouette_iou.value_or(1.0) < kMinOverlap)
     assessment.reasons.push_back(
         fmt::format("the model's outline overlaps with the masks by {:.2f}, expected at least {}",
@@ -164,7 +164,7 @@ std::string describe(const ShowResult& shown, const ModelAssessment& assessment)
   for (const Take& one : shown.takes) text += describe_take(one);
   text +=
       fmt::format("  {:.0f} mm across, views agree within {:.2f} mm, {:.0f} % of the surface seen; {:.1f} s\n",
-                  1e3 * mesh_diameter(shown.mesh), 1e3 * shown.agreement_m, 100.0 * shown.seen_surface, shown.seconds);
+                  1e3 * mesh_diameter(shown.mesh), 1e3 * shown.deviation_m, 100.0 * shown.seen_surface, shown.seconds);
   return text;
 }
 

@@ -16,7 +16,7 @@ struct ShowResult {
   Mesh mesh;
   double seen_surface = 0.0;  ///< share of the closed surface that some view shows
   bool second_fits = true;    ///< the second take, where there was one
-  double agreement_m = 0.0;
+  double deviation_m = 0.0;
   double free_space_violation = 0.0;     ///< reconstruction::free_space_violation()
   std::optional<double> silhouette_iou;  ///< median over the views, with masks that were given
   double seconds = 0.0;                  ///< seconds until the model was there
@@ -44,7 +44,7 @@ int tracked_frames(const reconstruction::Take& take);
 reconstruction::ViewCoverage seen_by_all(const ShowResult& shown);
 
 /// Returns by how many degrees a turn missed its beginning.
-double degrees_of(const reconstruction::LoopClosureError& gap);
+double degrees_of(const reconstruction::LoopClosureError& loop_error);
 
 /// Describes the verdict and its figures, in a few lines.
 std::string describe(const ShowResult& shown, const ModelAssessment& assessment);

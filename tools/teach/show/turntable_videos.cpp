@@ -157,7 +157,7 @@ class Merging {
 Take take_of(const std::vector<TrainingView>& views, std::vector<MaskedKeyframe>& shown) {
   Take take;
   take.motion = reconstruction::Motion::kTurntable;
-  take.degrees_round = 360;
+  take.covered_degrees = 360;
   for (std::size_t i = 0; i < views.size(); ++i) {
     reconstruction::Keyframe keyframe;
     keyframe.frame = views[i].frame;
@@ -203,7 +203,7 @@ ShowResult show_turntable(const ShowOptions& options) {
   shown.takes.push_back(take_of(views, shown.views.front()));
   shown.mesh = std::move(model.mesh);
   shown.seen_surface = covered_fraction(model.seen);
-  shown.agreement_m = fused_model(options.name, views, options.threads).after.median_m;
+  shown.deviation_m = fused_model(options.name, views, options.threads).after.median_m;
   shown.silhouette_iou = merging.overlap();
   shown.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return shown;

@@ -58,7 +58,7 @@ ReconstructedModel ground_truth_model(const Take& take) {
     model.views.push_back({static_cast<int>(i), keyframe.T_camera_world,
                            render_visible_mask(model.mesh, keyframe.frame, keyframe.T_camera_world)});
   }
-  model.agreement_m = 1.0;
+  model.deviation_m = 1.0;
   return model;
 }
 
@@ -70,9 +70,9 @@ TEST(MergeTakes, HowWellTheViewsAgreeIsThatOfBothTakes) {
   ReconstructionSettings settings;
   settings.voxel_m = 0.003;
   ASSERT_TRUE(merge_takes(first, model, second, other, settings));
-  EXPECT_LT(model.agreement_m, 0.003);
-  EXPECT_EQ(other.agreement_m, model.agreement_m);
-  EXPECT_EQ(model.agreement_m, surface_deviation(model.mesh, {{&first, &model.views}, {&second, &other.views}}, 1));
+  EXPECT_LT(model.deviation_m, 0.003);
+  EXPECT_EQ(other.deviation_m, model.deviation_m);
+  EXPECT_EQ(model.deviation_m, surface_deviation(model.mesh, {{&first, &model.views}, {&second, &other.views}}, 1));
 }
 
 }  // namespace

@@ -45,10 +45,10 @@ double drift_m(const Take& take, int first, int last) {
 TEST(TakeMapper, ClosesATurnAndMakesAModel) {
   const Take take = go_round(table_with({}), 0, kFrames, {});
   EXPECT_EQ(take.motion, Motion::kCamera);
-  EXPECT_EQ(take.degrees_round, 360);
+  EXPECT_EQ(take.covered_degrees, 360);
   EXPECT_TRUE(take.lost.empty());
-  ASSERT_TRUE(take.gap);
-  EXPECT_LT(take.gap->shift_m, 0.01);
+  ASSERT_TRUE(take.loop_error);
+  EXPECT_LT(take.loop_error->shift_m, 0.01);
   EXPECT_LT(drift_m(take, 0, kFrames - 1), 0.003);
   const ReconstructedModel model = reconstruct_model(take, {});
   const Eigen::AlignedBox3f bounds = mesh_bounds(model.mesh);
@@ -56,7 +56,7 @@ TEST(TakeMapper, ClosesATurnAndMakesAModel) {
   EXPECT_NEAR(bounds.max().z(), 0.16, 0.004);
   EXPECT_NEAR(bounds.diagonal().head<2>().norm(), std::hypot(bounds.sizes().x(), bounds.sizes().y()), 1e-4);
   EXPECT_NEAR(mesh_diameter(model.mesh), Eigen::Vector3d(0.12, 0.08, 0.16).norm(), 0.006);
-  EXPECT_LT(model.agreement_m, 0.001);
+  EXPECT_LT(model.deviation_m, 0.001);
 }
 
 TEST(TakeMapper, FirstSaysWhatItTakesForTheObject) {

@@ -42,8 +42,8 @@ TEST(ModelAssessment, AModelThatIsSeenThroughIsPoor) {
 reconstruction::Take closed_turn() {
   reconstruction::Take take;
   take.motion = reconstruction::Motion::kCamera;
-  take.degrees_round = 360;
-  take.gap = reconstruction::LoopClosureError{0.004, 0.01};
+  take.covered_degrees = 360;
+  take.loop_error = reconstruction::LoopClosureError{0.004, 0.01};
   return take;
 }
 
@@ -53,7 +53,7 @@ TEST(ModelAssessment, EachTakeIsJudged) {
   shown.takes = {closed_turn(), closed_turn()};
   shown.views.emplace_back(20);
   EXPECT_TRUE(assess_model(shown).good);
-  shown.takes[1].degrees_round = 120;
+  shown.takes[1].covered_degrees = 120;
   shown.views[1].resize(5);
   EXPECT_EQ(assess_model(shown).reasons,
             (std::vector<std::string>{"the second take: too short: seen from 120 degrees of the turn, expected all 360",
@@ -65,7 +65,7 @@ TEST(ModelAssessment, ATakeInTheDarkIsNotCalledShortWithoutSayingWhy) {
   shown.silhouette_iou.reset();
   shown.takes = {closed_turn()};
   shown.takes[0].frames.resize(100);
-  shown.takes[0].degrees_round = 50;
+  shown.takes[0].covered_degrees = 50;
   shown.takes[0].blurred = 4;
   shown.takes[0].badly_exposed = 80;
   EXPECT_EQ(
