@@ -25,9 +25,9 @@ class DetectProcess {
   void run() {
     status_.set_known_objects(options_.objects);
     catch_stop_signals();
-    reception_.subscribe_to_frames(Account::kReceived, [this](const ReceivedFrame& frame) { add_frame(frame); });
+    reception_.subscribe_to_frames(CountedAs::kReceived, [this](const ReceivedFrame& frame) { add_frame(frame); });
     if ((options_.max_rate_hz > 0.0 || options_.on_poses) && !bus_.is_log()) {
-      reception_.subscribe_to_results<object_poses_t>(channel::kPoses, Account::kOthers,
+      reception_.subscribe_to_results<object_poses_t>(channel::kPoses, CountedAs::kOther,
                                                       [this](const ReceivedResult& poses) { note_poses(poses); });
     }
     if (options_.on_camera_colours && !bus_.is_log()) {
@@ -47,7 +47,7 @@ class DetectProcess {
     if (!throttle_.is_due(frame.id) || push(frame)) status_.count_skipped(1);
   }
 
-  /// Returns whether another frame is dropped for it, or it for another.
+  /// Returns whether a frame was dropped: this one, or the one that it replaces.
   bool push(const ReceivedFrame& frame) {
     EncodedFrame encoded{frame.id, shared_copy(frame.bytes), frame.time};
     return frame.order == FrameOrder::kLate ? newest_.push_late(frame.id.channel, std::move(encoded), frame.bytes.size)

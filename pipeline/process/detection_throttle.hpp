@@ -28,8 +28,9 @@ class DetectionThrottle {
   /// results may name any camera.
   void expedite(const std::string& channel);
 
-  /// Reports the number of doubtful followed poses of a camera. If it has grown, the next interval is shortened as by
-  /// expedite(); poses that stay doubtful, such as those of an object without colours, have no effect.
+  /// Reports the number of doubtful followed poses of a camera (quality below 0.5). If it has grown, the next interval
+  /// is shortened as by expedite(); poses that stay doubtful, such as those of an object without colours, have no
+  /// effect.
   void note_doubts(const std::string& channel, int doubtful);
 
  private:

@@ -16,7 +16,7 @@ void FrameSynchroniser::add_frame(const FrameId& id, SharedBytes bytes) {
     ByteBudget::Reservation reservation = frame_bytes_.reserve(bytes->size());
     ++camera.frame_count;
     camera.frames.push_back({{id, std::move(bytes)}, ++frame_count_, std::move(reservation)});
-    if (camera.frames.size() > kHistory) camera.frames.pop_front();
+    if (camera.frames.size() > kCachedFrames) camera.frames.pop_front();
     limit_frame_bytes();
     camera.has_unmatched_frame = newest_first_ && offers_unmatched_frames_;
     drop_unmatchable(camera);
@@ -64,7 +64,7 @@ FrameSynchroniser::Camera& FrameSynchroniser::largest_camera() {
 }
 
 void FrameSynchroniser::limit_frame_bytes() {
-  while (frame_bytes_.total() > kHistoryBytes) {
+  while (frame_bytes_.total() > kCachedBytes) {
     Camera& camera = largest_camera();
     if (camera.frames.front().number == frame_count_) return;  // the last one that has come is the only one left
     camera.frames.pop_front();
@@ -103,20 +103,20 @@ std::optional<SynchronisedMessages> FrameSynchroniser::next_pair() {
     }
     SynchronisedMessages pair = std::move(it->pair);
     it = deferred_.erase(it);
-    if (answer == FrameGate::Answer::kGo) return pair;
+    if (answer == FrameGate::Answer::kAccept) return pair;
   }
   while (Camera* camera = next_camera()) {
     SynchronisedMessages pair = pop_pair(*camera);
     const std::int64_t now_us = gate_.now_us ? gate_.now_us() : 0;
     const FrameGate::Answer answer = decide_by_gate(pair.id, now_us);
-    if (answer == FrameGate::Answer::kGo) return pair;
+    if (answer == FrameGate::Answer::kAccept) return pair;
     if (answer == FrameGate::Answer::kWait) defer(std::move(pair), now_us);
   }
   return std::nullopt;
 }
 
 FrameGate::Answer FrameSynchroniser::decide_by_gate(const FrameId& id, std::int64_t since_us) {
-  if (!gate_.decide) return FrameGate::Answer::kGo;
+  if (!gate_.decide) return FrameGate::Answer::kAccept;
   const FrameGate::Decision decision = gate_.decide(id, static_cast<double>(gate_.now_us() - since_us) * 1e-6);
   if (decision.answer == FrameGate::Answer::kRefuse) dropped_.refused.push_back({id, decision.reason});
   return decision.answer;
@@ -133,9 +133,8 @@ void FrameSynchroniser::defer(SynchronisedMessages pair, std::int64_t since_us) 
 }
 
 void FrameSynchroniser::recheck_gate() {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-  }  // so that a thread in pop() has either asked the gate already, or waits
+  // The lock ensures that a thread in pop() has either asked the gate already or is waiting.
+  { const std::lock_guard<std::mutex> lock(mutex_); }
   changed_.notify_one();
 }
 
@@ -171,9 +170,9 @@ void FrameSynchroniser::drop_first(Camera& camera) {
   camera.pending.pop_front();
 }
 
-const FrameSynchroniser::HistoryEntry* FrameSynchroniser::Camera::find_frame(const FrameId& id) const {
+const FrameSynchroniser::CachedFrame* FrameSynchroniser::Camera::find_frame(const FrameId& id) const {
   const auto found =
-      std::find_if(frames.rbegin(), frames.rend(), [&](const HistoryEntry& entry) { return entry.frame.id == id; });
+      std::find_if(frames.rbegin(), frames.rend(), [&](const CachedFrame& entry) { return entry.frame.id == id; });
   return found == frames.rend() ? nullptr : &*found;
 }
 
@@ -217,9 +216,9 @@ void FrameSynchroniser::drop_stale(const std::string& channel, Camera& camera) {
 
 void FrameSynchroniser::drop_unmatchable(Camera& camera) {
   // The second condition bounds memory where detections come and frames do not.
-  while (
-      !camera.pending.empty() && camera.find_frame(camera.pending.front().id) == nullptr &&
-      (camera.frame_count - camera.pending.front().frames_before > kMaxLagFrames || camera.pending.size() > kHistory)) {
+  while (!camera.pending.empty() && camera.find_frame(camera.pending.front().id) == nullptr &&
+         (camera.frame_count - camera.pending.front().frames_before > kMaxLagFrames ||
+          camera.pending.size() > kCachedFrames)) {
     drop_first(camera);
   }
   while (camera.pending.size() > kMaxPending) drop_first(camera);
@@ -228,11 +227,11 @@ void FrameSynchroniser::drop_unmatchable(Camera& camera) {
 SynchronisedMessages FrameSynchroniser::pop_pair(Camera& camera) {
   const auto selected = camera.pending.begin() + static_cast<std::ptrdiff_t>(*camera.first_matched());
   if (selected->id == camera.frames.back().frame.id) camera.has_unmatched_frame = false;
-  const HistoryEntry& entry = *camera.find_frame(selected->id);
+  const CachedFrame& entry = *camera.find_frame(selected->id);
   SynchronisedMessages pair;
   pair.id = selected->id;
   pair.frame = entry.frame.bytes;
-  pair.frame_number = entry.number;
+  pair.arrival_number = entry.number;
   pair.result = std::move(selected->bytes);
   pair.arrival = selected->arrival;
   camera.last_served = ++serve_count_;

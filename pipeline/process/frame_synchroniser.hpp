@@ -20,7 +20,7 @@
 
 namespace houghstream {
 
-/// An encoded frame of the history.
+/// An encoded frame that is kept for results still to come.
 struct StoredFrame {
   FrameId id;
   SharedBytes bytes;
@@ -30,7 +30,7 @@ struct StoredFrame {
 struct SynchronisedMessages {
   FrameId id;
   SharedBytes frame;
-  std::int64_t frame_number = 0;  ///< number of the frame in order of arrival, since a name may come again
+  std::int64_t arrival_number = 0;  ///< number of the frame in order of arrival, since a frame id may come again
   std::vector<std::uint8_t> result;
   std::chrono::steady_clock::time_point arrival;  ///< arrival of the result
 };
@@ -38,9 +38,9 @@ struct SynchronisedMessages {
 /// Decides whether each pair is handed out; without `decide` every pair is. `decide` is called with
 /// the synchroniser locked, in the thread that pops, for the oldest pairs first and again for those that must wait.
 struct FrameGate {
-  enum class Answer { kGo, kWait, kRefuse };
+  enum class Answer { kAccept, kWait, kRefuse };
   struct Decision {
-    Answer answer = Answer::kGo;
+    Answer answer = Answer::kAccept;
     std::string reason;  ///< reason of a refusal
   };
   /// `age_s` is the time since this pair was decided on first, seconds.
@@ -54,11 +54,11 @@ struct FrameGate {
 /// not in seconds, so that a log gives the same pairs at any speed. May be used from any thread.
 class FrameSynchroniser {
  public:
-  /// Frames of each camera that are kept for results still to come: 64, and fewer where those of all cameras have
-  /// more bytes than this. First the camera with the most frames drops its oldest; where each has one left, the
-  /// earliest goes. The last frame that has come stays, however large it is.
-  static constexpr std::size_t kHistory = 64;
-  static constexpr std::size_t kHistoryBytes = std::size_t{192} << 20U;
+  /// Size of the cache of encoded frames, which are kept for results still to come: 64 of each camera, and fewer where
+  /// those of all cameras have more bytes than this. First the camera with the most frames drops its oldest; where each
+  /// has one left, the earliest goes. The last frame that has come stays, however large it is.
+  static constexpr std::size_t kCachedFrames = 64;
+  static constexpr std::size_t kCachedBytes = std::size_t{192} << 20U;
   /// Maximum number of pending results of each camera, which wait for their frame or for pop(); the oldest are dropped.
   static constexpr std::size_t kMaxPending = 128;
   /// Maximum number of bytes of the pending results of all cameras; above it, the camera with the most results drops
@@ -69,7 +69,7 @@ class FrameSynchroniser {
   /// Maximum number of deferred pairs, those of all cameras that wait for the gate, and of the bytes of their frames;
   /// the oldest are refused.
   static constexpr std::size_t kMaxDeferred = 1024;
-  static constexpr std::size_t kMaxDeferredBytes = kHistoryBytes;
+  static constexpr std::size_t kMaxDeferredBytes = kCachedBytes;
   /// Results without their frame wait for this many further frames of the camera, then are dropped.
   static constexpr std::int64_t kMaxLagFrames = 30;
 
@@ -92,7 +92,7 @@ class FrameSynchroniser {
   void recheck_gate();
 
   /// Returns the newest frame of a camera, where `newest_first`, and where neither it nor its pair has been popped:
-  /// there is time to decode it while its result is on the way. It stays here for it.
+  /// there is time to decode it while its result is on the way. The frame is kept for its result.
   std::optional<StoredFrame> pop_unmatched_frame();
 
   /// Frames and results that were dropped since the last call.
@@ -111,9 +111,9 @@ class FrameSynchroniser {
   void flush();
 
  private:
-  struct HistoryEntry {
+  struct CachedFrame {
     StoredFrame frame;
-    std::int64_t number = 0;  // SynchronisedMessages::frame_number
+    std::int64_t number = 0;  // SynchronisedMessages::arrival_number
     ByteBudget::Reservation reservation;
   };
   struct PendingResult {
@@ -127,16 +127,16 @@ class FrameSynchroniser {
   struct DeferredPair {
     SynchronisedMessages pair;
     std::int64_t since_us = 0;            // time on the gate's clock
-    ByteBudget::Reservation reservation;  // bytes of the frame, which may have left the history
+    ByteBudget::Reservation reservation;  // bytes of the frame, which may have left the cache
   };
   struct Camera {
-    std::deque<HistoryEntry> frames;    // the newest last
+    std::deque<CachedFrame> frames;     // the newest last
     std::deque<PendingResult> pending;  // results in the order of arrival
     std::int64_t frame_count = 0;
     bool has_unmatched_frame = false;  // whether pop_unmatched_frame() may return the last frame
     std::int64_t last_served = 0;      // value of serve_count_ when it was served last
 
-    const HistoryEntry* find_frame(const FrameId& id) const;
+    const CachedFrame* find_frame(const FrameId& id) const;
     std::optional<std::size_t> first_matched() const;
   };
 

@@ -12,7 +12,7 @@ namespace houghstream {
 /// status of each single pose would say so. Not thread-safe.
 class ModelCheck {
  public:
-  /// `models` are the classes that have one. Without any it never warns.
+  /// `models` names the classes that have a model; without any it never warns.
   explicit ModelCheck(std::set<std::string> models) : models_(std::move(models)) {}
 
   /// Adds a class that has a model from here on.

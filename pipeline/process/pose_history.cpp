@@ -14,20 +14,20 @@ bool has_common_class(const ObjectPoses& poses, const Detections& detections) {
 
 }  // namespace
 
-std::vector<std::string> PoseHistory::note_classes(const Detections& detections, std::int64_t frame_number) {
+std::vector<std::string> PoseHistory::note_classes(const Detections& detections, std::int64_t arrival_number) {
   constexpr std::size_t kFrames = 16;
   std::set<std::string> names;
   for (const Detection& detection : detections.detections) names.insert(detection.class_name);
   const auto known = std::find_if(classes_.begin(), classes_.end(),
                                   [&](const FrameClasses& classes) { return classes.frame == detections.frame; });
   if (known == classes_.end()) {
-    classes_.push_back({detections.frame, frame_number, std::move(names)});
+    classes_.push_back({detections.frame, arrival_number, std::move(names)});
     if (classes_.size() > kFrames) classes_.pop_front();
     return {};
   }
-  if (known->number != frame_number) {
+  if (known->number != arrival_number) {
     detectors_.forget(detections.frame);
-    *known = {detections.frame, frame_number, std::move(names)};
+    *known = {detections.frame, arrival_number, std::move(names)};
     return {};
   }
   std::vector<std::string> duplicates;

@@ -19,9 +19,9 @@ namespace houghstream {
 class PoseHistory {
  public:
   /// Notes the classes of a result, before its poses are estimated. Returns those that another detector has found in
-  /// this frame before, which get two poses. `frame_number` distinguishes frames of one name (a log that is played
-  /// again): results of another number are of another frame.
-  std::vector<std::string> note_classes(const Detections& detections, std::int64_t frame_number);
+  /// this frame before, which get two poses. `arrival_number` distinguishes frames of one frame id (a log that is
+  /// played again): results of another number are of another frame.
+  std::vector<std::string> note_classes(const Detections& detections, std::int64_t arrival_number);
 
   /// Returns the last poses of this camera; with several detectors, the last ones of an earlier frame that share a
   /// class with these detections. Empty where there are none.

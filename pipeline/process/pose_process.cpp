@@ -90,10 +90,10 @@ class PoseProcess {
   void run() {
     status_.set_known_objects(options_.objects);
     catch_stop_signals();
-    reception_.subscribe_to_frames(follow_ ? Account::kReceived : Account::kOthers,
+    reception_.subscribe_to_frames(follow_ ? CountedAs::kReceived : CountedAs::kOther,
                                    [this](const ReceivedFrame& frame) { add_frame(frame); });
     reception_.subscribe_to_results<detections_t>(
-        channel::kDetections, follow_ ? Account::kOthers : Account::kReceived,
+        channel::kDetections, follow_ ? CountedAs::kOther : CountedAs::kReceived,
         [this](const ReceivedResult& detections) { add_detections(detections); },
         [this](const FrameId& frame) { note_other_camera(frame); });
     log_info("ready: {}frames from {}, detections from {} at {}", follow_ ? "follows in " : "", options_.frame_channels,
@@ -224,7 +224,7 @@ class PoseProcess {
     if (!follow_ && detections.detections.empty()) return {detections.frame, {}, detections.stages};
     const DecodedFrames::Decoded frame = decoded_.decode(pair.frame, pair.id.channel);
     detections.stages.push_back(frame->stages.back());
-    if (!follow_) warn_of_shared_classes(detections, pair.frame_number);
+    if (!follow_) warn_of_shared_classes(detections, pair.arrival_number);
     update_model_check();
     warn(model_check_.note(detections));
     ObjectPoses poses = estimate_(*frame, detections, follow_ ? ObjectPoses{} : history_.find_warm_start(detections));
@@ -233,8 +233,8 @@ class PoseProcess {
     return poses;
   }
 
-  void warn_of_shared_classes(const Detections& detections, std::int64_t frame_number) {
-    for (const std::string& name : history_.note_classes(detections, frame_number)) {
+  void warn_of_shared_classes(const Detections& detections, std::int64_t arrival_number) {
+    for (const std::string& name : history_.note_classes(detections, arrival_number)) {
       status_.note_bad_message(fmt::format(
           "frame {}: two detectors find '{}', which gets two poses; expected detectors of different objects",
           to_string(detections.frame), name));
@@ -272,7 +272,7 @@ class PoseProcess {
   }
 
   void log_missing_frames() const {
-    // On a network another process may handle other cameras' detections; of a log it is reported.
+    // On a network another process may handle other cameras' detections; in a log none does, so they are reported.
     const std::int64_t others = bus_.is_log() ? other_camera_detections_.load() : 0;
     const std::int64_t all = detections_ + others;
     const std::int64_t missing = without_frame_ + others;

@@ -56,8 +56,8 @@ using EstimatePoses = std::function<ObjectPoses(const RgbdFrame&, const Detectio
 /// where frames are to be kept without a log; returns as run_process_loop does.
 void run_pose_process(LcmBus& bus, const PoseProcessOptions& options, const EstimatePoses& estimate);
 
-/// Poses of what is followed in the newest frame of a camera; with the frame's stages, that of its decoding the last.
-/// Nothing for a frame that newer ones have overtaken on its way.
+/// Returns the poses of the objects followed in a camera's newest frame, or nothing for an overtaken frame. Their
+/// stages are the frame's, decoding last.
 using FollowFrame = std::function<std::optional<ObjectPoses>(const RgbdFrame&)>;
 
 /// Functions that follow objects from frame to frame. Both are called concurrently from two threads on a network, one

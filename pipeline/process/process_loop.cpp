@@ -73,8 +73,8 @@ class Receiver {
     }
   }
 
-  /// Blocks that are still in use at the end of the heap keep what was freed before them: each peak of what is in use
-  /// at once, and rarer ones are higher, would stay for good.
+  /// Returns freed memory to the system. A block in use at the heap's end keeps all memory freed before it, so that
+  /// each rare peak would stay for good.
   void return_memory_if_due() {
     const auto now = std::chrono::steady_clock::now();
     if (now - memory_returned_ < kMemoryInterval) return;

@@ -16,11 +16,11 @@ Reception::Reception(LcmBus& bus, StatusReporter& status, const std::string& fra
   require(!keep_frames || bus.is_log(), "frames are kept of a log (-l file://LOG), not of {}", bus.url());
 }
 
-void Reception::subscribe_to_frames(Account account, FrameHandler handler) {
+void Reception::subscribe_to_frames(CountedAs counted_as, FrameHandler handler) {
   bus_.subscribe_to_frames(pattern_.text(), [=, handler = std::move(handler)](const ReceivedMessage& message) {
     if (!pattern_.is_name() && !is_frame_message(message.bytes)) return;
     if (keep_frames_) bus_.publish(message.channel, message.bytes, message.event_us);
-    receive(message, account, [&] { return handle_frame(message, handler); });
+    receive(message, counted_as, [&] { return handle_frame(message, handler); });
   });
 }
 
@@ -32,11 +32,11 @@ bool Reception::handle_frame(const ReceivedMessage& message, const FrameHandler&
   return true;
 }
 
-void Reception::subscribe_to_results(MessageType type, const std::string& channel, Account account,
+void Reception::subscribe_to_results(MessageType type, const std::string& channel, CountedAs counted_as,
                                      ResultHandlers handlers) {
   const auto duplicates = std::make_shared<DuplicateFilter>();
   bus_.subscribe(channel, [=, type = std::move(type), handlers = std::move(handlers)](const ReceivedMessage& message) {
-    receive(message, account, [&] {
+    receive(message, counted_as, [&] {
       require(message.bytes.size <= kMaxResultBytes, "results of {} bytes, expected at most {}", message.bytes.size,
               kMaxResultBytes);
       check_wire(message.bytes, type.fingerprint, type.name);
@@ -61,13 +61,13 @@ bool Reception::handle_result(const ReceivedMessage& message, const ResultHandle
   return true;
 }
 
-void Reception::receive(const ReceivedMessage& message, Account account, const std::function<bool()>& handle) {
+void Reception::receive(const ReceivedMessage& message, CountedAs counted_as, const std::function<bool()>& handle) {
   advance_log_clock(message);
   try {
-    if (handle() && account == Account::kReceived) status_.count_received();
+    if (handle() && counted_as == CountedAs::kReceived) status_.count_received();
   } catch (const InputError& error) {
     const std::string reason = fmt::format("message on {}: {}", message.channel, error.what());
-    if (account == Account::kOthers) return status_.note_bad_message(reason);
+    if (counted_as == CountedAs::kOther) return status_.note_bad_message(reason);
     status_.count_received();
     status_.count_refused(reason, message.channel);
   }

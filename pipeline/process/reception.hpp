@@ -16,7 +16,7 @@
 
 namespace houghstream {
 
-/// An encoded frame's bytes, which are copied once, off the bus, however many keep them.
+/// The bytes of an encoded frame, copied once from the bus and shared by all who keep them.
 using SharedBytes = std::shared_ptr<const std::vector<std::uint8_t>>;
 SharedBytes shared_copy(ByteView bytes);
 
@@ -43,9 +43,8 @@ struct ReceivedResult {
   std::chrono::steady_clock::time_point time;
 };
 
-/// Account of status_t to which the messages of a subscription are added: those that it counts as received and refused,
-/// or others, of which only faults are counted, separately.
-enum class Account { kReceived, kOthers };
+/// Selects how status_t counts a subscription's messages: as received and refused, or only their faults, separately.
+enum class CountedAs { kReceived, kOther };
 
 /// Subscribes to what a process works on, and checks and counts each message before the process sees it. A message that
 /// cannot be understood, or that its handler refuses with an InputError, is counted and logged, one line a second of
@@ -53,7 +52,7 @@ enum class Account { kReceived, kOthers };
 /// handlers are called in the thread that calls LcmBus::handle(). Must outlive the bus' last call of handle().
 class Reception {
  public:
-  /// Maximum size of a result, which two thousand detections have; larger ones are refused.
+  /// Maximum size of a result, about that of two thousand detections; larger ones are refused.
   static constexpr std::size_t kMaxResultBytes = std::size_t{1} << 20U;
 
   using FrameHandler = std::function<void(const ReceivedFrame&)>;
@@ -65,14 +64,14 @@ class Reception {
   /// Throws InputError where that is asked for without a log.
   Reception(LcmBus& bus, StatusReporter& status, const std::string& frame_channels, bool keep_frames = false);
 
-  void subscribe_to_frames(Account account, FrameHandler handler);
+  void subscribe_to_frames(CountedAs counted_as, FrameHandler handler);
 
   /// Receives results; those of frames on other channels than `frame_channels` are not counted, and only `other_camera`
   /// is called.
   template <typename Message>
-  void subscribe_to_results(const std::string& channel, Account account, ResultHandler handler,
+  void subscribe_to_results(const std::string& channel, CountedAs counted_as, ResultHandler handler,
                             OtherCameraHandler other_camera = {}) {
-    subscribe_to_results({Message::getHash(), Message::getTypeName()}, channel, account,
+    subscribe_to_results({Message::getHash(), Message::getTypeName()}, channel, counted_as,
                          {std::move(handler), std::move(other_camera)});
   }
 
@@ -81,7 +80,7 @@ class Reception {
   void subscribe_to_messages(const std::string& channels,
                              std::function<void(const Message&, const ReceivedMessage&)> handler) {
     bus_.subscribe(channels, [this, handler = std::move(handler)](const ReceivedMessage& message) {
-      receive(message, Account::kOthers, [&] {
+      receive(message, CountedAs::kOther, [&] {
         handler(decode_message<Message>(message.bytes), message);
         return true;
       });
@@ -102,9 +101,10 @@ class Reception {
     OtherCameraHandler other_camera;
   };
 
-  void subscribe_to_results(MessageType type, const std::string& channel, Account account, ResultHandlers handlers);
+  void subscribe_to_results(MessageType type, const std::string& channel, CountedAs counted_as,
+                            ResultHandlers handlers);
   /// `handle` returns whether the message counts.
-  void receive(const ReceivedMessage& message, Account account, const std::function<bool()>& handle);
+  void receive(const ReceivedMessage& message, CountedAs counted_as, const std::function<bool()>& handle);
   bool handle_frame(const ReceivedMessage& message, const FrameHandler& handler);
   bool handle_result(const ReceivedMessage& message, const ResultHandlers& handlers, DuplicateFilter& duplicates);
   void advance_log_clock(const ReceivedMessage& message);

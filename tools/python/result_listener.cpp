@@ -95,7 +95,7 @@ struct ResultListener::State {
                                                         placed.add(placed_objects_from_message(message));
                                                       });
     reception.subscribe_to_results<objects_t>(
-        channel::kObjects, Account::kOthers, [this](const ReceivedResult& result) {
+        channel::kObjects, CountedAs::kOther, [this](const ReceivedResult& result) {
           PlacedWorld placed_world{world_from_message(decode_message<objects_t>(result.bytes)), std::nullopt};
           const WorldObjects& world = placed_world.world;
           const ObjectPlacements* known = placed.find([&](const ObjectPlacements& other) {
@@ -108,14 +108,14 @@ struct ResultListener::State {
 
   void subscribe_to_poses() {
     reception.subscribe_to_results<detections_t>(
-        channel::kDetections, Account::kOthers, [this](const ReceivedResult& result) {
+        channel::kDetections, CountedAs::kOther, [this](const ReceivedResult& result) {
           detections.add(detections_from_message(decode_message<detections_t>(result.bytes)));
         });
     reception.subscribe_to_messages<pose_probabilities_t>(
         channel::kPoseProbabilities,
         [this](const pose_probabilities_t& message, const ReceivedMessage&) { probabilities.add(message); });
     reception.subscribe_to_results<object_poses_t>(
-        channel::kPoses, Account::kOthers, [this](const ReceivedResult& result) {
+        channel::kPoses, CountedAs::kOther, [this](const ReceivedResult& result) {
           PosedDetections posed{poses_from_message(decode_message<object_poses_t>(result.bytes)), std::nullopt};
           probabilities.find([&](const auto& message) { return apply_probabilities(message, posed.poses); });
           const Detections* answered =

@@ -40,10 +40,10 @@ class TrackProcess {
 
   tracks::ExtrinsicCheck run() {
     status_.set_known_objects(options_.objects);
-    reception_.subscribe_to_frames(Account::kOthers, [this](const ReceivedFrame& frame) { add_frame(frame); });
-    reception_.subscribe_to_results<detections_t>(channel::kDetections, Account::kOthers,
+    reception_.subscribe_to_frames(CountedAs::kOther, [this](const ReceivedFrame& frame) { add_frame(frame); });
+    reception_.subscribe_to_results<detections_t>(channel::kDetections, CountedAs::kOther,
                                                   [this](const ReceivedResult& result) { add_detections(result); });
-    reception_.subscribe_to_results<object_poses_t>(channel::kPoses, Account::kReceived,
+    reception_.subscribe_to_results<object_poses_t>(channel::kPoses, CountedAs::kReceived,
                                                     [this](const ReceivedResult& result) { add_poses(result); });
     reception_.subscribe_to_messages<rigid_transform_t>(
         ".*_TO_WORLD", [this](const rigid_transform_t& message, const ReceivedMessage& arrival) {
@@ -100,7 +100,7 @@ class TrackProcess {
       if (!pose.T_world_camera && pose.may_come) return {FrameGate::Answer::kWait, ""};
       if (!pose.T_world_camera) return {FrameGate::Answer::kRefuse, pose.reason};
       T_world_camera_ = *pose.T_world_camera;
-      return {FrameGate::Answer::kGo, ""};
+      return {FrameGate::Answer::kAccept, ""};
     };
     gate.now_us = [this] { return reception_.now_us(); };
     gate.awaited = "the transforms of their cameras";

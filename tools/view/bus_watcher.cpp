@@ -25,7 +25,7 @@ BusWatcher::BusWatcher(LcmBus& bus, const std::string& frame_channels, const Mat
     : bus_(bus), reception_(bus, status_, frame_channels), matcher_(match), queue_(waiting_frames, match.kept_bytes) {
   require(!bus_.is_log(), "{}: a log is watched by replaying it with lcm-logplayer, expected a network URL",
           bus_.url());
-  reception_.subscribe_to_frames(Account::kReceived, [this](const ReceivedFrame& frame) { add_frame(frame); });
+  reception_.subscribe_to_frames(CountedAs::kReceived, [this](const ReceivedFrame& frame) { add_frame(frame); });
   subscribe_to_results();
   subscribe_to_status();
   subscribe_to_teaching();
@@ -56,7 +56,7 @@ void BusWatcher::add_frame(const ReceivedFrame& frame) {
 
 void BusWatcher::subscribe_to_results() {
   reception_.subscribe_to_results<detections_t>(
-      channel::kDetections, Account::kOthers, [this](const ReceivedResult& result) {
+      channel::kDetections, CountedAs::kOther, [this](const ReceivedResult& result) {
         Detections detections = detections_from_message(decode_message<detections_t>(result.bytes));
         if (!cameras_.is_shown(result.id.channel)) return;
         matcher_.add_detections(std::move(detections), microseconds(result.time), result.bytes.size);
@@ -65,7 +65,7 @@ void BusWatcher::subscribe_to_results() {
       channel::kPoseProbabilities,
       [this](const pose_probabilities_t& message, const ReceivedMessage& /*arrival*/) { probabilities_.add(message); });
   reception_.subscribe_to_results<object_poses_t>(
-      channel::kPoses, Account::kOthers, [this](const ReceivedResult& result) {
+      channel::kPoses, CountedAs::kOther, [this](const ReceivedResult& result) {
         ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(result.bytes));
         if (!cameras_.is_shown(result.id.channel)) return;
         probabilities_.find([&](const auto& message) { return apply_probabilities(message, poses); });

@@ -117,14 +117,14 @@ TEST(FrameSynchroniser, APairWaitsForTheGateWithItsFrameHoweverManyFramesCome) {
   FrameSynchroniser synchroniser(false, false, test.gate());
   add_pair(synchroniser, 1, arrived_bytes(11));
   EXPECT_FALSE(synchroniser.pop(std::chrono::minutes(1)).has_value()) << "returns at once: its age will pass";
-  for (int i = 0; i <= static_cast<int>(FrameSynchroniser::kHistory); ++i)
+  for (int i = 0; i <= static_cast<int>(FrameSynchroniser::kCachedFrames); ++i)
     synchroniser.add_frame(id(100 + i), arrived_bytes(0));
   test.now_us = 250000;
   EXPECT_FALSE(synchroniser.pop(kNow).has_value());
   EXPECT_EQ(test.ages_s.front(), 0.0);
   EXPECT_EQ(test.ages_s.back(), 0.25);
   add_pair(synchroniser, 2, arrived_bytes(12));
-  test.decision.answer = FrameGate::Answer::kGo;
+  test.decision.answer = FrameGate::Answer::kAccept;
   synchroniser.recheck_gate();
   EXPECT_EQ(*synchroniser.pop(kNow)->frame, bytes(11)) << "the oldest first";
   EXPECT_EQ(*synchroniser.pop(kNow)->frame, bytes(12));
@@ -169,7 +169,7 @@ TEST(FrameSynchroniser, PairsThatWaitForTheGateAreKeptWithinBounds) {
     ASSERT_EQ(static_cast<std::int64_t>(refused.size()), kMore);
     EXPECT_EQ(refused[0].id, id(1));
     EXPECT_EQ(refused[0].reason, "too many wait for the key");
-    test.decision.answer = FrameGate::Answer::kGo;
+    test.decision.answer = FrameGate::Answer::kAccept;
     EXPECT_EQ(synchroniser.pop(kNow)->id, id(kMore + 1));
   }
 }
@@ -201,7 +201,7 @@ TEST(FrameSynchroniser, MemoryIsBoundedWhereFramesNeverCome) {
   FrameSynchroniser synchroniser(true);
   const int count = 500;
   for (int i = 0; i < count; ++i) synchroniser.add_result(id(i), bytes(0));
-  EXPECT_EQ(synchroniser.pop_dropped().without_frame.size(), count - FrameSynchroniser::kHistory);
+  EXPECT_EQ(synchroniser.pop_dropped().without_frame.size(), count - FrameSynchroniser::kCachedFrames);
 }
 
 TEST(FrameSynchroniser, MemoryIsBoundedWhereResultsOfOneFrameComeWithoutEnd) {
@@ -276,7 +276,7 @@ TEST(FrameSynchroniser, OtherCamerasFramesDoNotAgeWhatWaits) {
 
 TEST(FrameSynchroniser, OldFramesAreForgotten) {
   FrameSynchroniser synchroniser(true);
-  for (int i = 0; i <= static_cast<int>(FrameSynchroniser::kHistory); ++i)
+  for (int i = 0; i <= static_cast<int>(FrameSynchroniser::kCachedFrames); ++i)
     synchroniser.add_frame(id(i), arrived_bytes(0));
   synchroniser.add_result(id(0), bytes(0));
   EXPECT_FALSE(synchroniser.pop(kNow).has_value());
@@ -286,7 +286,7 @@ TEST(FrameSynchroniser, OldFramesAreForgotten) {
 
 TEST(FrameSynchroniser, LargeFramesAreKeptWithinABoundInBytes) {
   FrameSynchroniser synchroniser(true);
-  const auto large = std::make_shared<const std::vector<std::uint8_t>>(FrameSynchroniser::kHistoryBytes / 8);
+  const auto large = std::make_shared<const std::vector<std::uint8_t>>(FrameSynchroniser::kCachedBytes / 8);
   for (int i = 0; i < 20; ++i) synchroniser.add_frame({"LEFT", i}, large);
   synchroniser.add_frame({"RIGHT", 1}, large);
   synchroniser.add_result({"LEFT", 19}, {});
@@ -299,11 +299,11 @@ TEST(FrameSynchroniser, LargeFramesAreKeptWithinABoundInBytes) {
 
 TEST(FrameSynchroniser, LargeFramesOfManyCamerasAreKeptWithinTheBoundToo) {
   FrameSynchroniser synchroniser(true);
-  const auto large = std::make_shared<const std::vector<std::uint8_t>>(FrameSynchroniser::kHistoryBytes / 3);
+  const auto large = std::make_shared<const std::vector<std::uint8_t>>(FrameSynchroniser::kCachedBytes / 3);
   const auto kept = [&] { return static_cast<std::size_t>(large.use_count() - 1) * large->size(); };
   for (std::size_t i = 0; i < FrameSynchroniser::kCameras; ++i) {
     synchroniser.add_frame({std::to_string(i), 1}, large);
-    EXPECT_LE(kept(), FrameSynchroniser::kHistoryBytes);
+    EXPECT_LE(kept(), FrameSynchroniser::kCachedBytes);
   }
   EXPECT_EQ(kept(), 3 * large->size());
   synchroniser.add_result({"63", 1}, {});
@@ -317,7 +317,7 @@ TEST(FrameSynchroniser, LargeFramesOfManyCamerasAreKeptWithinTheBoundToo) {
 
 TEST(FrameSynchroniser, TheLastFrameStaysHoweverLargeItIs) {
   FrameSynchroniser synchroniser(true);
-  const auto large = std::make_shared<const std::vector<std::uint8_t>>(FrameSynchroniser::kHistoryBytes + 1);
+  const auto large = std::make_shared<const std::vector<std::uint8_t>>(FrameSynchroniser::kCachedBytes + 1);
   synchroniser.add_frame({"LEFT", 1}, arrived_bytes(1));
   synchroniser.add_frame({"RIGHT", 1}, large);
   synchroniser.add_result({"RIGHT", 1}, {});

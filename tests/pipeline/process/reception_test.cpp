@@ -33,7 +33,7 @@ TEST(Reception, WhatIsNoFrameIsPassedOverOnAPatternAndABadFrameOnAName) {
   for (const bool is_pattern : {true, false}) {
     TestReception test(is_pattern ? "LEFT|RIGHT" : "LEFT");
     std::vector<FrameId> frames;
-    test.reception.subscribe_to_frames(Account::kReceived,
+    test.reception.subscribe_to_frames(CountedAs::kReceived,
                                        [&](const ReceivedFrame& frame) { frames.push_back(frame.id); });
     test.send("LEFT", noise);
     test.send("LEFT", encode_message(to_message(make_test_frame(7), WireFormat{}, 0)));
@@ -44,12 +44,12 @@ TEST(Reception, WhatIsNoFrameIsPassedOverOnAPatternAndABadFrameOnAName) {
 }
 
 TEST(Reception, WhatAHandlerRefusesIsCountedAsItsSubscriptionIs) {
-  for (const Account account : {Account::kReceived, Account::kOthers}) {
+  for (const CountedAs counted_as : {CountedAs::kReceived, CountedAs::kOther}) {
     TestReception test(channel::kFrame);
-    test.reception.subscribe_to_results<detections_t>(channel::kDetections, account,
+    test.reception.subscribe_to_results<detections_t>(channel::kDetections, counted_as,
                                                       [](const ReceivedResult&) { fail("there is no room"); });
     test.send(channel::kDetections, encode_message(to_message(one_bowl(1))));
-    const std::int64_t counted = account == Account::kReceived ? 1 : 0;
+    const std::int64_t counted = counted_as == CountedAs::kReceived ? 1 : 0;
     EXPECT_EQ(test.status.message().frames_received, counted);
     EXPECT_EQ(test.status.message().frames_refused, counted);
     EXPECT_EQ(test.status.message().last_error, "message on HOUGHSTREAM_DETECTIONS: there is no room");
@@ -61,7 +61,7 @@ TEST(Reception, OnlyTheOtherCamerasHandlerHearsOfItsResults) {
   std::vector<FrameId> own;
   std::vector<FrameId> others;
   test.reception.subscribe_to_results<detections_t>(
-      channel::kDetections, Account::kReceived, [&](const ReceivedResult& result) { own.push_back(result.id); },
+      channel::kDetections, CountedAs::kReceived, [&](const ReceivedResult& result) { own.push_back(result.id); },
       [&](const FrameId& frame) { others.push_back(frame); });
   test.send(channel::kDetections, encode_message(to_message(one_bowl(1, "RIGHT"))));
   test.send(channel::kDetections, encode_message(to_message(one_bowl(2, "THIRD"))));
