@@ -155,7 +155,7 @@ void learn_scores(const TrainingSplit& training_split, const Profile& profile, c
     return find_score_examples(counted.through(source), first_view, profile, forest, scales);
   };
   fit_scores(examples(plain), class_ids, forest);
-  calibrate_scores(examples(hard_negatives), class_ids, forest);
+  scale_log_odds(examples(hard_negatives), class_ids, forest);
   progress(fmt::format("score from {} composed pictures of {} rooms", plain.count + hard_negatives.count,
                        training_split.for_score.size()));
 }

@@ -176,7 +176,7 @@ void fit_scores(const std::vector<ScoreExamples>& by_frame, const std::set<int>&
   }
 }
 
-void calibrate_scores(const std::vector<ScoreExamples>& by_frame, const std::set<int>& class_ids, Forest& forest) {
+void scale_log_odds(const std::vector<ScoreExamples>& by_frame, const std::set<int>& class_ids, Forest& forest) {
   ScoreExamples examples = joined(by_frame);
   OddsExamples all;
   std::map<int, OddsExamples> by_class;

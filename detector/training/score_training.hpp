@@ -50,6 +50,6 @@ void fit_scores(const std::vector<ScoreExamples>& by_frame, const std::set<int>&
 /// Scales and shifts the log odds of each class in `class_ids`, so that a score is right about as often as it says
 /// among these examples, beginning from what does so for all of them together (Platt 1999). Which detection of an
 /// object scores higher than which stays.
-void calibrate_scores(const std::vector<ScoreExamples>& by_frame, const std::set<int>& class_ids, Forest& forest);
+void scale_log_odds(const std::vector<ScoreExamples>& by_frame, const std::set<int>& class_ids, Forest& forest);
 
 }  // namespace houghstream::training

@@ -167,7 +167,7 @@ TEST(ScoreTraining, CalibratedScoresAreRightAsOftenAsTheySayAndKeepTheirOrder) {
     object.score_model.weights = {};
     object.score_model.weights.log_vote_mass = kOfMass;
   }
-  calibrate_scores(judged_by_mass(1, kOfMass, kFewer), {1}, forest);
+  scale_log_odds(judged_by_mass(1, kOfMass, kFewer), {1}, forest);
   const ScoreTerms& weights = forest.classes[0].score_model.weights;
   EXPECT_NEAR(weights.constant, kFewer, 0.15);
   EXPECT_NEAR(weights.log_vote_mass, kOfMass, 0.2);
@@ -182,7 +182,7 @@ TEST(ScoreTraining, WithoutExamplesScoresStayAsTheyAre) {
   mug.name = "mug";
   mug.radius = 0.1F;
   const ScoreTerms before = forest.classes[0].score_model.weights;
-  calibrate_scores({}, {1}, forest);
+  scale_log_odds({}, {1}, forest);
   EXPECT_EQ(listed(forest.classes[0].score_model.weights), listed(before));
 }
 
