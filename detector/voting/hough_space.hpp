@@ -24,7 +24,7 @@ inline float vote_kernel(float distance_sq, float vote_sigma) {
 /// One vote for an object's centre in the camera frame.
 struct Vote {
   Eigen::Vector3f centre_camera;  ///< metres
-  float weight = 0.0F;            ///< share of the patch's posterior, 0 to 1
+  float weight = 0.0F;            ///< p(class | leaf) times the vote's share, over the number of trees; 0 to 1
 };
 
 /// A patch and one of its leaves that knows the class.
