@@ -70,11 +70,10 @@ struct StampedFrame {
 class WorldClock {
  public:
   /// Classifies a result: it is used, skipped, or begins a new world. This may change the world's clock.
-  /// - A time more than a second from the camera's last one is skipped until a second result, or of a time ahead
-  /// another
-  ///   camera, confirms it, since a single stamp may be wrong. Confirmed and ahead: the world's clock moves on, at most
-  ///   a minute. Confirmed and behind with rising numbers: the camera's clock was set back and the world continues.
-  ///   Otherwise a new world begins, at once where the source was restarted.
+  /// - A time more than a second from the camera's last one is skipped until a second result confirms it, or, where it
+  ///   is ahead, another camera, since a single stamp may be wrong. Confirmed and ahead: the world's clock moves on, at
+  ///   most a minute. Confirmed and behind with rising numbers: the camera's clock was set back and the world
+  ///   continues. Otherwise a new world begins, at once where the source was restarted.
   /// - It is of an older frame of a camera that continues: it was only delayed, and is skipped.
   /// - It is more than a second older than another camera's last one, as with clocks that disagree: throws InputError.
   ///   After thirty of them in a row the other camera has ended, and the thirtieth begins a new world.
