@@ -75,6 +75,22 @@ std::string describe_neighbours(const fs::path& folder) {
   return fmt::format("in {} lies {}", above.string(), fmt::join(names, ", "));
 }
 
+bool is_of_faulty_group(const StoredObject& object, const std::vector<GroupFault>& faults) {
+  return std::any_of(faults.begin(), faults.end(),
+                     [&](const GroupFault& fault) { return fault.group == object.group; });
+}
+
+/// Returns one line that names the first fault and all objects that are not known by the faults; empty without any.
+std::string describe_faults(const ObjectStore& store, const std::vector<GroupFault>& faults) {
+  if (faults.empty()) return "";
+  std::vector<std::string> names;
+  for (const StoredObject& object : store.objects) {
+    if (is_of_faulty_group(object, faults)) names.push_back(object.name);
+  }
+  const std::string others = faults.size() == 1 ? "" : fmt::format(" (and {} others)", faults.size() - 1);
+  return fmt::format("{}{}; without it {}", faults.front().problem, others, fmt::join(names, ", "));
+}
+
 }  // namespace
 
 StoreWatcherBase::StoreWatcherBase(fs::path folder, Load load) : folder_(std::move(folder)), load_(std::move(load)) {
@@ -88,7 +104,10 @@ StoreWatcherBase::StoreWatcherBase(fs::path folder, Load load) : folder_(std::mo
     return;
   }
   const ObjectStore store = read_store(folder_);
-  adopt(store, load_(store));
+  Loaded<void> loaded = load_(store);
+  const std::string problem = describe_faults(store, loaded.faults);
+  if (!problem.empty()) refuse(std::exchange(taken_, ""), problem);
+  adopt(store, std::move(loaded));
 }
 
 StoreWatcherBase::~StoreWatcherBase() {
@@ -107,6 +126,8 @@ void StoreWatcherBase::follow(std::chrono::milliseconds period) {
 
 void StoreWatcherBase::require_store() const {
   require(current() != nullptr, "{}: no such folder, expected an object store of hs-teach", folder_.string());
+  const std::string problem = known().problem;
+  if (!problem.empty()) throw InputError(problem);
 }
 
 std::shared_ptr<const void> StoreWatcherBase::current() const {
@@ -162,9 +183,13 @@ void StoreWatcherBase::report_missing_store() {
 void StoreWatcherBase::load(const std::string& state) {
   try {
     const ObjectStore store = read_store(folder_);
-    std::shared_ptr<const void> loaded = load_(store);
+    Loaded<void> loaded = load_(store);
     if (state_of_store(folder_) != state) return;  // parts of two stores were read
-    adopt(store, std::move(loaded));
+    const std::string problem = describe_faults(store, loaded.faults);
+    const bool is_first = current() == nullptr;
+    if (!problem.empty()) refuse(state, problem);
+    if (problem.empty() || is_first) adopt(store, std::move(loaded));
+    if (!problem.empty()) return;
     taken_ = state;
   } catch (const WorkCancelled&) {
     return;
@@ -186,11 +211,12 @@ void StoreWatcherBase::refuse(const std::string& state, const std::string& probl
   set_problem(problem);
 }
 
-void StoreWatcherBase::adopt(const ObjectStore& store, std::shared_ptr<const void> loaded) {
+void StoreWatcherBase::adopt(const ObjectStore& store, Loaded<void> loaded) {
   const std::int64_t now = utime_now();
   const std::lock_guard lock(mutex_);
   std::vector<KnownObject> objects;
   for (const StoredObject& object : store.objects) {
+    if (is_of_faulty_group(object, loaded.faults)) continue;
     const auto known = std::find_if(known_.objects.begin(), known_.objects.end(),
                                     [&](const KnownObject& earlier) { return earlier.name == object.name; });
     objects.push_back({object.name, known == known_.objects.end() ? now : known->since_utime});
@@ -200,7 +226,7 @@ void StoreWatcherBase::adopt(const ObjectStore& store, std::shared_ptr<const voi
              changed("new:", objects, known_.objects), changed("gone:", known_.objects, objects));
   }
   if (current_) retired_.push_back(std::move(current_));
-  current_ = std::move(loaded);
+  current_ = std::move(loaded.part);
   known_.objects = std::move(objects);
   known_.since_utime = now;
 }

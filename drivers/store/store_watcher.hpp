@@ -8,6 +8,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "drivers/store/object_store.hpp"
@@ -15,13 +16,32 @@
 
 namespace houghstream::store {
 
+/// A group of a store that cannot be loaded, while the others can.
+struct GroupFault {
+  int group = 0;
+  std::string problem;  ///< one line that names the file, the value and what was expected
+};
+
+/// A program's part of a store.
+template <typename T>
+struct Loaded {
+  // NOLINTNEXTLINE(google-explicit-constructor): most programs load all of it or nothing
+  Loaded(std::shared_ptr<const T> all) : part(std::move(all)) {}
+  Loaded(std::shared_ptr<const T> whole_groups, std::vector<GroupFault> others)
+      : part(std::move(whole_groups)), faults(std::move(others)) {}
+
+  std::shared_ptr<const T> part;
+  std::vector<GroupFault> faults;  ///< the groups that `part` lacks, in ascending order
+};
+
 /// Watches an object store that changes while a program runs: the program's part of it is loaded in a thread of low
 /// priority, and replaces the previous one atomically. A truncated or invalid store leaves the previous state; one line
-/// of the log and known() state the reason. It is retried after five periods, then with exponential backoff up to 300,
+/// of the log and known() state the reason. Where there is no previous state, the groups that can be loaded are taken
+/// without those that cannot. A faulty store is retried after five periods, then with exponential backoff up to 300,
 /// since memory or file descriptors may have been missing. Every function may be called from any thread.
 class StoreWatcherBase {
  public:
-  using Load = std::function<std::shared_ptr<const void>(const ObjectStore&)>;
+  using Load = std::function<Loaded<void>(const ObjectStore&)>;
 
   /// Loads the store at once. `load` throws where its parts are bad; it may be called again later, from another thread.
   /// Where there is no folder of this name yet, but one that it could be made in, no object is known so far; this is
@@ -36,7 +56,8 @@ class StoreWatcherBase {
   /// since copying into it takes a while.
   void follow(std::chrono::milliseconds period);
 
-  /// Instead of follow(), where all is to go by the same: throws InputError if there is no store yet.
+  /// Instead of follow(), where all is to go by the same: throws InputError if there is no store yet, or not all of it
+  /// could be loaded.
   void require_store() const;
 
   /// Returns the object that was loaded last; null while there is no store yet.
@@ -50,7 +71,7 @@ class StoreWatcherBase {
   void load(const std::string& state);
   void refuse(const std::string& state, const std::string& problem);
   void report_missing_store();
-  void adopt(const ObjectStore& store, std::shared_ptr<const void> loaded);
+  void adopt(const ObjectStore& store, Loaded<void> loaded);
   void set_problem(const std::string& problem);
 
   std::filesystem::path folder_;
@@ -74,9 +95,13 @@ class StoreWatcherBase {
 template <typename T>
 class StoreWatcher {
  public:
-  using Load = std::function<std::shared_ptr<const T>(const ObjectStore&)>;
+  using Load = std::function<Loaded<T>(const ObjectStore&)>;
 
-  StoreWatcher(const std::filesystem::path& folder, Load load) : watcher_(folder, std::move(load)) {}
+  StoreWatcher(const std::filesystem::path& folder, Load load)
+      : watcher_(folder, [load = std::move(load)](const ObjectStore& store) {
+          Loaded<T> loaded = load(store);
+          return Loaded<void>(std::move(loaded.part), std::move(loaded.faults));
+        }) {}
 
   void follow(std::chrono::milliseconds period = std::chrono::milliseconds(200)) { watcher_.follow(period); }
   void require_store() const { watcher_.require_store(); }

@@ -79,13 +79,15 @@ struct DetectOptions {
   DetectProcessOptions process;
 };
 
-std::shared_ptr<const ReadyDetector> load_detector(const store::ObjectStore& store, const DetectOptions& options,
-                                                   const RgbdFrame& warm_up_frame) {
+/// Loads the groups that are whole; the others are the watcher's to report.
+store::Loaded<ReadyDetector> load_detector(const store::ObjectStore& store, const DetectOptions& options,
+                                           const RgbdFrame& warm_up_frame) {
   const SearchOptions search = with_precision(options.search, store, options.precision);
   GroupScheduleSettings scheduling;
   scheduling.interval_s = options.group_interval_s.value_or(scheduling.interval_s);
-  return std::make_shared<const ReadyDetector>(make_detector(load_store_forests(store, search.threads), search),
-                                               scheduling, warm_up_frame);
+  std::vector<store::GroupFault> faults;
+  Detector detector = make_detector(load_whole_forests(store, search.threads, faults), search);
+  return {std::make_shared<const ReadyDetector>(std::move(detector), scheduling, warm_up_frame), std::move(faults)};
 }
 
 /// Lowers the priority of this thread and of all threads that it starts from here on: where the rate of detections is

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "detector/forest/forest_file.hpp"
 #include "drivers/store/object_store.hpp"
+#include "drivers/store/store_watcher.hpp"
+#include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
 #include "tools/finder/searched_objects.hpp"
 
@@ -21,15 +25,38 @@ inline Forest load_group_forest(const store::ObjectStore& store, int group) {
   return forest;
 }
 
-/// The forests of all groups, in order of their numbers; several are read at once. Of those that cannot be read the
-/// first is named.
-inline std::vector<Forest> load_store_forests(const store::ObjectStore& store, int threads) {
+/// The forests of the groups that can be read, in order of their numbers, with the faults of the others; several are
+/// read at once. Throws InputError where none can be read.
+inline std::vector<Forest> load_whole_forests(const store::ObjectStore& store, int threads,
+                                              std::vector<store::GroupFault>& faults) {
   const std::vector<int> groups = store.groups();
-  std::vector<Forest> forests(groups.size());
+  std::vector<std::optional<Forest>> forests(groups.size());
+  std::vector<std::string> problems(groups.size());
   parallel_for(threads, static_cast<int>(groups.size()), [&](int i) {
     const auto place = static_cast<std::size_t>(i);
-    forests[place] = load_group_forest(store, groups[place]);
+    try {
+      forests[place] = load_group_forest(store, groups[place]);
+    } catch (const InputError& error) {
+      problems[place] = error.what();
+    }
   });
+  std::vector<Forest> whole;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    if (forests[i]) {
+      whole.push_back(*std::move(forests[i]));
+    } else {
+      faults.push_back({groups[i], problems[i]});
+    }
+  }
+  if (whole.empty()) throw InputError(faults.front().problem);
+  return whole;
+}
+
+/// The forests of all groups, in order of their numbers. Throws InputError naming the first that cannot be read.
+inline std::vector<Forest> load_store_forests(const store::ObjectStore& store, int threads) {
+  std::vector<store::GroupFault> faults;
+  std::vector<Forest> forests = load_whole_forests(store, threads, faults);
+  if (!faults.empty()) throw InputError(faults.front().problem);
   return forests;
 }
 

@@ -146,6 +146,51 @@ TEST(StoreWatcher, ABadOneKeepsTheOldAndIsSaidOnce) {
   EXPECT_EQ(count_of(said, "2 objects from here on; new: bowl; gone: brick"), 1) << said;
 }
 
+/// Makes a store of two groups, in a folder of its own; the bricks' forest is torn.
+fs::path store_with_torn_group(const std::string& name) {
+  const fs::path folder = whole_store(name);
+  ObjectStore store = read_store(folder);
+  for (StoredObject& object : store.objects) object.group = object.id;
+  fs::create_directories(store.forests_folder());
+  write_text(store.forest_file(2), "a forest");
+  write_text(store.forest_file(5), "a fo");
+  write_store_json(store);
+  return folder;
+}
+
+/// Loads the names of the objects whose groups' forests are whole.
+Loaded<std::string> load_whole_groups(const ObjectStore& store) {
+  std::string names;
+  std::vector<GroupFault> faults;
+  for (const StoredObject& object : store.objects) {
+    const fs::path file = store.forest_file(object.group);
+    if (read_text(file) == "a forest") {
+      names += object.name + " ";
+    } else {
+      faults.push_back({object.group, file.string() + ": torn"});
+    }
+  }
+  return {std::make_shared<const std::string>(names), faults};
+}
+
+TEST(StoreWatcher, ATornGroupIsSaidAndTheOthersAreKnown) {
+  const fs::path folder = store_with_torn_group("watch_torn");
+  StoreWatcher<std::string> watch(folder, load_whole_groups);
+  EXPECT_EQ(*watch.current(), "mug ");
+  EXPECT_EQ(names_of(watch.known()), std::vector<std::string>{"mug"});
+  EXPECT_NE(watch.known().problem.find("forests/000005: torn; without it brick"), std::string::npos)
+      << watch.known().problem;
+  EXPECT_NE(error_of([&] { watch.require_store(); }).find("forests/000005: torn"), std::string::npos);
+  watch.follow(kPeriod);
+  write_text(read_store(folder).forest_file(5), "a forest");
+  ASSERT_TRUE(comes_true([&] { return *watch.current() == "mug brick "; }));
+  EXPECT_TRUE(comes_true([&] { return watch.known().problem.empty(); }));
+  EXPECT_EQ(names_of(watch.known()), (std::vector<std::string>{"mug", "brick"}));
+  write_text(read_store(folder).forest_file(2), "");
+  ASSERT_TRUE(comes_true([&] { return !watch.known().problem.empty(); }));
+  EXPECT_EQ(*watch.current(), "mug brick ") << "what was known of the torn group stays";
+}
+
 TEST(StoreWatcher, OneThatIsNotThereYetIsAwaited) {
   const fs::path folder = fresh_folder("watch_awaited") / "store";
   Second watch(folder, load_second);

@@ -102,6 +102,25 @@ TEST(StoreMerge, NeitherOrderNorDivisionChangesABit) {
   EXPECT_FALSE(files_in(out / "abc") == all);
 }
 
+TEST(StoreMerge, ATornForestCostsItsOwnGroup) {
+  const fs::path in = copied_stores("merge_torn");
+  merge_stores({in / "a", in / "b", in / "c"}, in / "all", false);
+  const store::ObjectStore all = store::read_store(in / "all");
+  fs::resize_file(all.forest_file(2), 1000);
+  std::vector<store::GroupFault> faults;
+  std::vector<std::string> names;
+  for (const Forest& forest : load_whole_forests(all, 2, faults)) names.push_back(forest.classes.front().name);
+  EXPECT_EQ(names, (std::vector<std::string>{all.objects[0].name, all.objects[2].name}));
+  ASSERT_EQ(faults.size(), 1U);
+  EXPECT_EQ(faults[0].group, 2);
+  EXPECT_NE(faults[0].problem.find("forests/000002"), std::string::npos) << faults[0].problem;
+  EXPECT_EQ(error_of([&] { load_store_forests(all, 2); }), faults[0].problem) << "nobody loads a part unasked";
+  fs::resize_file(all.forest_file(1), 0);
+  fs::resize_file(all.forest_file(3), 0);
+  faults.clear();
+  EXPECT_NE(error_of([&] { load_whole_forests(all, 2, faults); }).find("forests/000001"), std::string::npos);
+}
+
 TEST(StoreMerge, TheStoreHoldsWhatItsPartsHold) {
   const fs::path in = copied_stores("merge_whole");
   const FileContents before = files_in(in);
