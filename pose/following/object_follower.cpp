@@ -367,6 +367,7 @@ std::vector<int> match_detections(const PoseEstimator& estimator, const Detectio
 }
 
 /// Updates the scores of the objects that were followed: each is found with a score, or is missed though in full view.
+/// What occludes an object lowers its detections' scores, and says nothing against it.
 void update_from_detections(const Detections& detections, const DetectionAssociation& association,
                             const FollowerSettings& settings, FollowedCamera& camera) {
   constexpr float kFullView = 0.7F;  // visible fraction
@@ -379,11 +380,12 @@ void update_from_detections(const Detections& detections, const DetectionAssocia
     if (found != association.matches.end()) {
       score = detections.detections[static_cast<std::size_t>(found - association.matches.begin())].score;
       object->found_us = followed_frame.clock_us;
-    } else if (followed_frame.poses[p].pose.visible_fraction < kFullView ||
-               seconds_between(object->found_us, followed_frame.clock_us) < settings.missed_after_s) {
+    } else if (seconds_between(object->found_us, followed_frame.clock_us) < settings.missed_after_s) {
       continue;
     }
-    object->score_logit += settings.logit_gain * (logit(score) - object->score_logit);
+    const double difference = logit(score) - object->score_logit;
+    if (difference < 0.0 && followed_frame.poses[p].pose.visible_fraction < kFullView) continue;
+    object->score_logit += settings.logit_gain * difference;
   }
 }
 

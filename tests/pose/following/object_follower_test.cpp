@@ -376,6 +376,30 @@ TEST(ObjectFollower, WhatTheDetectorMissesThoughItIsInFullViewBecomesLessSure) {
   EXPECT_LT(score, 0.5F);
 }
 
+TEST(ObjectFollower, WeakDetectionsOfWhatIsHalfHiddenSayNothingAgainstIt) {
+  for (const bool is_hidden : {true, false}) {
+    Following it(box_and_mug());
+    Mesh arm;
+    add_box(arm, {-0.3F, -0.3F, 0.5F}, {-0.075F, 0.3F, 0.52F});  // over the left half of the box
+    if (is_hidden) it.film.screens.push_back(arm);
+    for (int i = 0; i < 10; ++i) {
+      const RgbdFrame frame = it.film.next();
+      const ObjectPoses poses = it.follower.follow(estimator(), frame).value();
+      ASSERT_EQ(valid_ones(poses), 2) << is_hidden << " " << i;
+      EXPECT_EQ(poses.poses[0].visible_fraction < 0.7F, is_hidden) << poses.poses[0].visible_fraction;
+      Detections weak = it.film.detected(frame.id);
+      weak.detections[0].score = 0.5F;
+      it.follower.process_detections(estimator(), frame, weak);
+    }
+    const float score = it.next().poses.at(0).detection_score;
+    if (is_hidden) {
+      EXPECT_NEAR(score, 0.9F, 1e-4F);
+    } else {
+      EXPECT_LT(score, 0.6F);
+    }
+  }
+}
+
 TEST(ObjectFollower, CamerasAreApart) {
   Following it(box_and_mug());
   EXPECT_TRUE(it.follower.follow(estimator(), it.film.next("LEFT")).value().poses.empty());
