@@ -31,6 +31,7 @@ struct Estimation {
   std::vector<RegistrationResult> selected = {};    ///< the best first
   std::vector<PoseEvidence> evidence = {};          ///< evidence of the selected poses
   std::size_t published = 0;                        ///< index of the selected pose that is published, or would be
+  const ObjectPose* continued = nullptr;            ///< sure pose of an earlier frame that the selected one continues
 };
 
 ObjectPoses undecided_poses(const Detections& detections) {
@@ -106,7 +107,10 @@ PoseStatus early_rejection_reason(const PoseSettings& settings, const ExplainedS
   return PoseStatus::kInvalid;
 }
 
-void select_pose(const PoseSettings& settings, const ExplainedSurface& explained, Estimation& estimation) {
+/// Selects among the registered candidates and their rotations, but for one that continues a sure pose of an earlier
+/// frame: that one's rotations were searched then.
+void select_pose(const ObjectPoses& earlier, const PoseSettings& settings, const ExplainedSurface& explained,
+                 Estimation& estimation) {
   const PoseSelectionSettings selection = pose_selection_settings(settings);
   const RegistrationResult best =
       best_registered(*estimation.observation, estimation.registered, estimation.rotations, selection);
@@ -115,8 +119,16 @@ void select_pose(const PoseSettings& settings, const ExplainedSurface& explained
   } else if (!estimation.detection.reported) {
     estimation.pose.status = early_rejection_reason(settings, explained, estimation, best);
   }
-  if (estimation.pose.status == PoseStatus::kInvalid)
-    estimation.selected = select_poses(*estimation.observation, best, estimation.rotations, selection);
+  if (estimation.pose.status == PoseStatus::kInvalid) {
+    const ObjectObservation& observation = *estimation.observation;
+    estimation.continued = find_continued(observation, best.T_camera_object, estimation.detection.class_name, earlier,
+                                          settings.warm_start);
+    if (estimation.continued != nullptr) {
+      estimation.selected = {refine_pose(observation, best.T_camera_object, estimation.rotations, selection)};
+    } else {
+      estimation.selected = select_poses(observation, best, estimation.rotations, selection);
+    }
+  }
   copy_registration_evidence(estimation.selected.empty() ? best : estimation.selected.front(), estimation.pose);
 }
 
@@ -179,11 +191,21 @@ void decide_best(const PoseSettings& settings, Estimation& estimation) {
   estimation.pose = *std::move(best);
 }
 
+/// Takes the texture's verdict over from the pose that is continued.
+void inherit_texture(const PoseSettings& settings, Estimation& estimation) {
+  const ObjectPose& continued = *estimation.continued;
+  PoseEvidence& evidence = estimation.evidence[estimation.published];
+  evidence.texture_probability = texture_probability_of(continued);
+  estimation.pose = decide_pose(estimation, estimation.selected[estimation.published], evidence, settings);
+  estimation.pose.continued_frames = continued.continued_frames + 1;
+}
+
 /// Selects the pose that the texture supports among those that are equivalent by shape, with its probability; also for
 /// rejected poses, whose quality is reported too.
 void resolve_symmetry(const PoseSettings& settings, Estimation& estimation) {
   constexpr float kMinShapeQuality = 0.1F;  // a pose that is wrong by its shape stays wrong
   if (estimation.pose.shape_quality < kMinShapeQuality) return;
+  if (estimation.continued != nullptr) return inherit_texture(settings, estimation);
   const DepthTolerance tolerance{settings.verification.tolerance_m, estimation.observation->noise};
   const TextureSettings& learnt = class_quality_of(settings, estimation.pose.class_name).texture;
   const RegistrationResult& published = estimation.selected[estimation.published];
@@ -338,7 +360,7 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
           register_candidates(*estimation.observation, estimation.candidates, settings.registration);
     });
     clock.mark("pose.registration");
-    for_each_undecided([&](Estimation& estimation) { select_pose(settings, explained, estimation); });
+    for_each_undecided([&](Estimation& estimation) { select_pose(earlier, settings, explained, estimation); });
     clock.mark("pose.choice");
     for_each_undecided([&](Estimation& estimation) { gather_all_evidence(settings, estimation); });
     if (settings.learn_camera_colours) learn_camera_colours(frame, remembered, estimations);

@@ -50,9 +50,10 @@ class PoseEstimator {
   ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections) const;
 
   /// Estimates with the poses of an earlier frame as a warm start: they are candidates beside those of the votes, never
-  /// the only ones, so that a wrong pose does not persist and a lost object is found again. `remembered` holds the
-  /// camera's colours learnt from earlier frames (CameraColours::pairs). `known` holds poses of this frame that are
-  /// known otherwise: what they explain is no candidate's.
+  /// the only ones, so that a wrong pose does not persist and a lost object is found again. Where the best candidate
+  /// continues a sure pose (find_continued), its alternatives by shape are searched again after some frames only.
+  /// `remembered` holds the camera's colours learnt from earlier frames (CameraColours::pairs). `known` holds poses of
+  /// this frame that are known otherwise: what they explain is no candidate's.
   ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier,
                        const std::vector<ChromaPair>& remembered = {}, const ObjectPoses& known = {}) const;
 

@@ -59,7 +59,10 @@ struct ObjectPose {
   float shape_quality = 0.0F;         ///< the same up to the symmetries of the shape: never below `quality`
   float free_space_violation = 0.0F;  ///< rendered pixels in front of what was measured, 0 to 1
   std::optional<ChromaPair> chroma;   ///< chroma of the model and as measured; not published
-  ChromaMap camera_colours;           ///< map applied to the model's colours, learnt without it; not published
+  /// Number of consecutive frames up to this one in which the pose continued another one without a search among its
+  /// alternatives; not published.
+  int continued_frames = 0;
+  ChromaMap camera_colours;  ///< map applied to the model's colours, learnt without it; not published
 };
 
 /// Returns whether the object counts as found: its detection is above the threshold and not refuted by its pose, or it

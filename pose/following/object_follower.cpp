@@ -10,6 +10,7 @@
 #include "pipeline/types/frame_results.hpp"
 #include "pipeline/types/frame_time.hpp"
 #include "pose/motion/twist.hpp"
+#include "pose/verification/pose_decision.hpp"
 
 namespace houghstream {
 namespace {
@@ -443,11 +444,6 @@ void withhold_where_followed(const PoseEstimator& estimator, const FollowedFrame
     if (estimator.is_duplicate(here, {pose.class_name, *followed.pose.T_camera_object}))
       return withhold_duplicate(followed.pose, pose);
   }
-}
-
-/// Returns the texture's verdict on a detection's pose, which following does not examine again.
-float texture_probability_of(const ObjectPose& pose) {
-  return pose.shape_quality > 0.0F ? pose.quality / pose.shape_quality : 1.0F;
 }
 
 /// Continues an object from a detection's pose where that is better than the followed one of its frame: the motion

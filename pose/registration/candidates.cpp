@@ -137,17 +137,43 @@ std::vector<PoseCandidate> place_candidates(const ObjectObservation& observation
   return candidates;
 }
 
+namespace {
+
+/// Returns the published poses of the class in an earlier frame that lie near the detected centre.
+std::vector<const ObjectPose*> earlier_poses(const ObjectObservation& observation, const std::string& class_name,
+                                             const ObjectPoses& earlier, const WarmStartSettings& settings) {
+  std::vector<const ObjectPose*> poses;
+  const double age_s = seconds_between(earlier.frame.utime, observation.frame.id.utime);
+  if (!(age_s > 0.0 && age_s <= settings.max_age_s)) return poses;
+  for (const ObjectPose& pose : earlier.poses) {
+    if (!pose.T_camera_object || pose.class_name != class_name) continue;
+    if (distance_from_detected(observation, *pose.T_camera_object) <= settings.reach_m) poses.push_back(&pose);
+  }
+  return poses;
+}
+
+}  // namespace
+
 std::vector<PoseCandidate> earlier_candidates(const ObjectObservation& observation, const std::string& class_name,
                                               const ObjectPoses& earlier, const WarmStartSettings& settings) {
   std::vector<PoseCandidate> candidates;
-  const double age_s = seconds_between(earlier.frame.utime, observation.frame.id.utime);
-  if (!(age_s > 0.0 && age_s <= settings.max_age_s)) return candidates;
-  for (const ObjectPose& pose : earlier.poses) {
-    if (!pose.T_camera_object || pose.class_name != class_name) continue;
-    if (distance_from_detected(observation, *pose.T_camera_object) > settings.reach_m) continue;
-    candidates.push_back({*pose.T_camera_object, 0.0F});
-  }
+  for (const ObjectPose* pose : earlier_poses(observation, class_name, earlier, settings))
+    candidates.push_back({*pose->T_camera_object, 0.0F});
   return candidates;
+}
+
+const ObjectPose* find_continued(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+                                 const std::string& class_name, const ObjectPoses& earlier,
+                                 const WarmStartSettings& settings) {
+  constexpr int kSpread = 4;  // frames over which classes are searched again
+  const double max_turn = settings.max_turn_deg * kRadPerDeg;
+  for (const ObjectPose* pose : earlier_poses(observation, class_name, earlier, settings)) {
+    const int maximum = settings.max_continued + (settings.max_continued > 0 ? pose->class_id % kSpread : 0);
+    if (pose->quality < settings.sure_quality || pose->continued_frames >= maximum) continue;
+    const Eigen::Matrix3d turn = pose->T_camera_object->linear().transpose() * T_camera_object.linear();
+    if (Eigen::AngleAxisd(turn).angle() <= max_turn) return pose;
+  }
+  return nullptr;
 }
 
 }  // namespace houghstream

@@ -53,10 +53,17 @@ void fields(const SearchSettings& /*settings*/, const Visit& visit) {
   visit(number("flat_keep", &S::flat_keep, 0, 1000));
 }
 
-/// Poses of an earlier frame as further candidates.
+/// Poses of an earlier frame as further candidates, and what was decided of them.
 struct WarmStartSettings {
   double max_age_s = 0.5;  ///< time between the frames
   double reach_m = 0.1;    ///< distance from the detected centre; objects farther away are others
+  /// Where the best registered candidate continues a pose of at least this quality, its alternatives (half turns, turns
+  /// about an axis) are not searched and its texture is not compared anew: that takes most of a pose's time.
+  float sure_quality = 0.9F;
+  double max_turn_deg = 10.0;  ///< rotation from one frame to the next of a pose that is continued
+  /// Number of consecutive frames for which a pose is continued so, and up to 3 more by class, so that not all objects
+  /// are searched again in one frame. 0: each pose is searched anew.
+  int max_continued = 8;
 };
 
 template <typename Visit>
@@ -64,6 +71,9 @@ void fields(const WarmStartSettings& /*settings*/, const Visit& visit) {
   using S = WarmStartSettings;
   visit(number("max_age_s", &S::max_age_s, 0, 3600, "s"));
   visit(number("reach_m", &S::reach_m, 0, 10, "m"));
+  visit(number("sure_quality", &S::sure_quality, 0, 1));
+  visit(number("max_turn_deg", &S::max_turn_deg, 0, 180, "degrees"));
+  visit(number("max_continued", &S::max_continued, 0, 1000000));
 }
 
 /// A rotation on which votes agree.
@@ -100,5 +110,11 @@ std::vector<PoseCandidate> place_candidates(const ObjectObservation& observation
 /// than this one or too long before it.
 std::vector<PoseCandidate> earlier_candidates(const ObjectObservation& observation, const std::string& class_name,
                                               const ObjectPoses& earlier, const WarmStartSettings& settings);
+
+/// Returns the pose of an earlier frame that a registered candidate of this one continues, or null: a sure one of the
+/// class that lies near it, rotated alike, and was not continued for too long.
+const ObjectPose* find_continued(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+                                 const std::string& class_name, const ObjectPoses& earlier,
+                                 const WarmStartSettings& settings);
 
 }  // namespace houghstream

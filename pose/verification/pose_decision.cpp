@@ -29,6 +29,10 @@ void decide_status(const PoseEvidence& evidence, const Eigen::Isometry3d& T_came
   }
 }
 
+float texture_probability_of(const ObjectPose& pose) {
+  return pose.shape_quality > 0.0F ? pose.quality / pose.shape_quality : 1.0F;
+}
+
 void copy_registration_evidence(const RegistrationResult& result, ObjectPose& pose) {
   pose.converged = result.converged;
   pose.iterations = result.iterations;

@@ -12,6 +12,9 @@ namespace houghstream {
 void decide_status(const PoseEvidence& evidence, const Eigen::Isometry3d& T_camera_object, bool reported,
                    const QualitySettings& quality, ObjectPose& pose);
 
+/// Returns PoseEvidence::texture_probability of a decided pose, for one that continues it.
+float texture_probability_of(const ObjectPose& pose);
+
 /// Copies the evidence of a registration into the pose.
 void copy_registration_evidence(const RegistrationResult& result, ObjectPose& pose);
 

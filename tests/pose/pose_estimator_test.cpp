@@ -295,6 +295,35 @@ TEST(PoseEstimator, TheTextureTellsABoxFromItselfTurnedOver) {
   EXPECT_GT(found.quality, 0.8F * found.shape_quality);
 }
 
+TEST(PoseEstimator, ASurePoseIsContinuedWithItsVerdictAndSearchedAnewAfterAWhile) {
+  const Eigen::Isometry3d truth = standing(30.0, 30.0, 0.8);
+  PoseSettings settings;
+  settings.warm_start.max_continued = 3;
+  const PoseEstimator estimator = estimator_for("box", printed_box(), settings);
+  ObjectPoses earlier;
+  std::vector<int> continued;
+  for (int i = 0; i < 6; ++i) {
+    RgbdFrame frame = coloured_frame(printed_box(), truth, 1 + i);
+    frame.id.utime = 1000 + 33333 * i;
+    Detections seen = only(detection_of("box", printed_box(), truth, 5 + i));
+    seen.frame = frame.id;
+    seen.detections[0].class_id = 4;
+    const ObjectPoses poses = estimator.estimate(frame, seen, earlier);
+    const ObjectPose& pose = poses.poses.at(0);
+    ASSERT_EQ(pose.status, PoseStatus::kValid) << i << to_string(pose.status);
+    ASSERT_GE(pose.quality, 0.9F) << i;
+    EXPECT_LT((pose.T_camera_object->translation() - truth.translation()).norm(), 0.003) << i;
+    EXPECT_LT(Eigen::AngleAxisd(truth.linear().transpose() * pose.T_camera_object->linear()).angle(), 0.05) << i;
+    if (pose.continued_frames > 0) {
+      const ObjectPose& before = earlier.poses.at(0);
+      EXPECT_NEAR(pose.quality / pose.shape_quality, before.quality / before.shape_quality, 1e-5F) << i;
+    }
+    continued.push_back(pose.continued_frames);
+    earlier = poses;
+  }
+  EXPECT_EQ(continued, (std::vector<int>{0, 1, 2, 3, 0, 1}));
+}
+
 TEST(PoseEstimator, WhatHasNoTextureIsValidUpToTheSymmetryOfItsShape) {
   const Eigen::Isometry3d truth = standing(30.0, 30.0, 0.8);
   const ObjectPose found = found_from_turned_votes(cereal_box(), truth, coloured_frame(printed_box(), truth, 1));

@@ -178,5 +178,41 @@ TEST(Candidates, OfEarlierPosesOnlyThoseOfTheClassNearInTimeAndPlaceCount) {
   EXPECT_EQ(count(1900000, other), 0U);
 }
 
+TEST(Candidates, ASurePoseIsContinuedByOneRotatedAlikeForALimitedTime) {
+  const Eigen::Isometry3d truth = standing(60.0, 30.0, 0.9);
+  RgbdFrame frame;
+  frame.id.utime = 2000000;
+  const ObjectModel model;
+  ObjectObservation observation{frame, model};
+  observation.centre_camera = truth.translation().cast<float>();
+  const WarmStartSettings settings;
+  ObjectPoses earlier;
+  earlier.frame.utime = 1966667;
+  ObjectPose sure;
+  sure.class_id = 2;
+  sure.class_name = "box";
+  sure.T_camera_object = truth;
+  sure.quality = sure.shape_quality = 0.95F;
+  const auto continues = [&](const ObjectPose& pose, double turn_deg, int maximum) {
+    earlier.poses = {pose};
+    WarmStartSettings limited = settings;
+    limited.max_continued = maximum;
+    const Eigen::Isometry3d turned = truth * Eigen::AngleAxisd(turn_deg * kRadPerDeg, Eigen::Vector3d::UnitX());
+    return find_continued(observation, turned, "box", earlier, limited) != nullptr;
+  };
+  EXPECT_TRUE(continues(sure, 8.0, 8));
+  EXPECT_FALSE(continues(sure, 12.0, 8));
+  EXPECT_FALSE(continues(sure, 180.0, 8)) << "an alternative by its shape";
+  EXPECT_FALSE(continues(sure, 0.0, 0)) << "each pose is searched anew";
+  ObjectPose doubtful = sure;
+  doubtful.quality = 0.85F;
+  EXPECT_FALSE(continues(doubtful, 0.0, 8));
+  ObjectPose old = sure;
+  old.continued_frames = 9;
+  EXPECT_TRUE(continues(old, 0.0, 8)) << "two frames more by its class";
+  old.continued_frames = 10;
+  EXPECT_FALSE(continues(old, 0.0, 8));
+}
+
 }  // namespace
 }  // namespace houghstream
