@@ -227,7 +227,8 @@ void HypothesisScorer::compare_templates(std::size_t count) {
   }
 }
 
-/// Returns the best match of all compared templates; null where none was compared.
+/// Returns the best match of all compared templates, from compare_sampled_views() on with the best sampled one; null
+/// where none was compared.
 const PlacedTemplate* HypothesisScorer::best_compared() const {
   const PlacedTemplate* best = compared_.empty() ? nullptr : &best_match(compared_);
   if (sampled_best_ && (best == nullptr || matches_better(*sampled_best_, *best))) return &*sampled_best_;
@@ -254,8 +255,9 @@ TaskIndices find_likely(const std::vector<ScoringTask>& tasks) {
   return likely;
 }
 
-/// Chooses the tasks of the subset that are compared with views of all attitudes: of classes with many views and with
-/// many votes, the `maximum` with the highest vote_logit().
+/// Chooses the tasks of the subset that are compared with views of all attitudes: of classes that were taught in
+/// several
+/// (`attitude_factor` above 1) and with many votes, the `maximum` with the highest vote_logit().
 TaskIndices choose_sampled(const std::vector<ScoringTask>& tasks, const TaskIndices& subset, int maximum) {
   // This is a fraction of the nominal vote mass: a third of the object, seen as well as in training.
   constexpr float kManyVotes = 0.3F;
@@ -333,7 +335,7 @@ TaskIndices choose_refined(const std::vector<ScoringTask>& tasks, const TaskIndi
 /// lies beyond its outline tells them apart.
 void HypothesisScorer::refine() {
   constexpr ScoreModel kCommon;
-  compare_templates(static_cast<std::size_t>(kTemplatesPerAttitude * attitude_factor_));
+  compare_templates(static_cast<std::size_t>(kTemplatesPerAttitude * attitude_factor_));  // compare() began them
   const Evidence unrefined = scored_.evidence;
   workspace_.best_visited.clear();
   double max_log_odds = -std::numeric_limits<double>::infinity();
@@ -354,7 +356,8 @@ void HypothesisScorer::refine() {
 }
 
 /// Returns the best matching templates of unlike attitudes, one more than attitudes are searched where these are
-/// several. They come from the templates that votes support, the sampled ones, and those sampled beside the centre.
+/// several. They come from the templates that votes support, the sampled ones, and those sampled beside the centre. Of
+/// `compared_` the best are aligned, in place.
 SeedTemplates HypothesisScorer::find_seeds() {
   constexpr float kUnlike_rad = 0.3F;
   // all compared, the best of them aligned, the best sampled one, and those beside the centre

@@ -200,8 +200,8 @@ FrameSynchroniser::Camera* FrameSynchroniser::next_camera() {
   return next;
 }
 
-// The newest complete result of each detector of the camera stays; results before these are dropped, since results do
-// not name their detector.
+// The newest complete result, whose frame is there, of each detector of the camera stays; results before these are
+// dropped, since results do not name their detector.
 void FrameSynchroniser::drop_stale(const std::string& channel, Camera& camera) {
   int missing = detectors_.estimate(channel);
   auto oldest = camera.pending.end();

@@ -164,9 +164,9 @@ class FrameSynchroniser {
   ByteBudget deferred_bytes_;              // frames of pairs that wait for the gate
   std::map<std::string, Camera> cameras_;  // by channel name
   std::deque<DeferredPair> deferred_;      // oldest first
-  DetectorCount detectors_;
-  std::int64_t result_count_ = 0;  // results that have arrived
-  std::int64_t frame_count_ = 0;   // frames that have arrived
+  DetectorCount detectors_;                // of each camera, estimated
+  std::int64_t result_count_ = 0;          // results that have arrived
+  std::int64_t frame_count_ = 0;           // frames that have arrived
   std::int64_t serve_count_ = 0;
   Dropped dropped_;
 };

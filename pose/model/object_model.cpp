@@ -297,6 +297,7 @@ void set_alternatives(const MeasuredMesh& measured, const Symmetries& same_appea
   SurfacePoints unround = find_unround_points(measured, *model.nearly_round);
   model.is_unround_alike = has_colours_of_views(model, unround);
   model.unround_points = std::move(unround.points);
+  model.unround_normals = std::move(unround.normals);
 }
 
 /// Accumulates the surface's second moments: those of a triangle are A / 12 (aa' + bb' + cc' + (a+b+c)(a+b+c)').

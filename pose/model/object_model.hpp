@@ -75,9 +75,10 @@ struct ObjectModel {
   /// registered.
   std::vector<Eigen::Isometry3d> near_alternatives;
   /// Rotations about `nearly_round`, which are alternatives where the part that breaks the round shape is occluded
-  /// before and after; and points of that part, object frame, metres.
+  /// before and after; and points of that part, object frame, metres, with their outward normals.
   std::vector<Eigen::Isometry3d> partial_alternatives;
   std::vector<Eigen::Vector3f> unround_points;
+  std::vector<Eigen::Vector3f> unround_normals;
   bool is_unround_alike = false;  ///< whether that part has the colours of the rest
 };
 

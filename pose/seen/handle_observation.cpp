@@ -31,7 +31,7 @@ Eigen::AlignedBox2d swept_by_handle(const ObjectModel& model, const ContinuousSy
 }  // namespace
 
 double HandleObservation::support() const {
-  return points == 0 ? 0.0 : (agreeing - contradicting) / points;
+  return points == 0 ? 0.0 : net_evidence() / points;
 }
 
 bool HandleObservation::is_visible() const {
@@ -70,9 +70,12 @@ HandleObserver::HandleObserver(const ObjectObservation& observation, const Eigen
 HandleObservation HandleObserver::observe_at(const Eigen::Isometry3d& T_camera_object) const {
   HandleObservation observed;
   const cv::Rect image(cv::Point(), observation_.frame.depth.size());
-  observed.points = static_cast<int>(observation_.model.unround_points.size());
-  for (const Eigen::Vector3f& point : observation_.model.unround_points) {
-    const Eigen::Vector3d at = T_camera_object * point.cast<double>();
+  const ObjectModel& model = observation_.model;
+  for (std::size_t i = 0; i < model.unround_points.size(); ++i) {
+    const Eigen::Vector3d at = T_camera_object * model.unround_points[i].cast<double>();
+    const Eigen::Vector3d normal = T_camera_object.linear() * model.unround_normals[i].cast<double>();
+    if (!(normal.dot(at) < 0.0)) continue;
+    ++observed.points;
     if (!(at.z() > 0.0)) continue;
     const Eigen::Vector2d pixel = observation_.frame.camera.project(at);
     const cv::Point nearest_px(cvRound(std::clamp(pixel.x(), -1.0, 1.0 * image.width)),

@@ -8,14 +8,16 @@
 namespace houghstream {
 
 /// What the frame shows of a handle, the part that breaks a nearly round shape (ObjectModel::unround_points), at a
-/// pose: sums over its points, of which none counts more than one. Points that are occluded or outside the image count
-/// 0.
+/// pose: sums over its points that face the camera, of which none counts more than one. Points that are occluded or
+/// outside the image count 0.
 struct HandleObservation {
   double agreeing = 0.0;       ///< evidence of points that the frame shows there
   double contradicting = 0.0;  ///< evidence of points where it shows something else
-  int points = 0;              ///< all points; 0 where the model has no handle
+  int points = 0;              ///< all points that face the camera; 0 where the model has no handle
 
-  /// Returns the agreeing less the contradicting fraction, -1 to 1; 0 without a handle.
+  /// Returns the agreeing less the contradicting evidence.
+  double net_evidence() const { return agreeing - contradicting; }
+  /// Returns net_evidence() as a fraction of the points, -1 to 1; 0 without a handle.
   double support() const;
   bool is_visible() const;       ///< more than a tenth agrees, and more than contradicts
   bool can_be_occluded() const;  ///< at most a tenth agrees, and at most a tenth contradicts

@@ -12,11 +12,14 @@
 namespace houghstream::tracks {
 namespace {
 
+/// What depth shows where an object should be.
+enum class DepthShows { kNothing, kObject, kFreeSpace, kOccluder };
+
 /// Holds the result of check_visibility().
 struct VisibilityCheck {
-  TrackState state = TrackState::kOutOfView;  ///< kUnrecognised: depth agrees; kGone: free-space violation
-  double free_space_violation = 0.0;          ///< fraction of what is not occluded, 0 to 1
-  bool is_boundary_continued = false;         ///< the measured surface continues beyond the object's outline
+  DepthShows shows = DepthShows::kNothing;
+  double free_space_violation = 0.0;   ///< fraction of what is not occluded, 0 to 1
+  bool is_boundary_continued = false;  ///< the measured surface continues beyond the object's outline
 };
 
 /// Renders the model at a pose and compares it with the depth of a frame.
@@ -41,10 +44,19 @@ VisibilityCheck check_visibility(const RgbdFrame& frame, const TrackModel& model
                                     std::max(1, verification.depth_inliers + verification.free_space_violations);
   visibility.is_boundary_continued =
       verification.boundary_continuations > 0.5F * static_cast<float>(verification.boundary_samples);
-  visibility.state = TrackState::kUnrecognised;
-  if (visibility.free_space_violation > kMaxFreeSpaceViolation) visibility.state = TrackState::kGone;
-  if (verification.occluded > kMaxOccluded * compared) visibility.state = TrackState::kHidden;
+  visibility.shows = DepthShows::kObject;
+  if (visibility.free_space_violation > kMaxFreeSpaceViolation) visibility.shows = DepthShows::kFreeSpace;
+  if (verification.occluded > kMaxOccluded * compared) visibility.shows = DepthShows::kOccluder;
   return visibility;
+}
+
+/// Returns the state of a track without a measurement, of which depth shows this.
+TrackState state_of(DepthShows shows) {
+  switch (shows) {
+    case DepthShows::kNothing: return TrackState::kOutOfView;
+    case DepthShows::kOccluder: return TrackState::kHidden;
+    default: return TrackState::kUnrecognised;  // it is gone when its log odds say so
+  }
 }
 
 /// Returns whether an object of another class is recognised in its place.
@@ -86,8 +98,8 @@ void update_unobserved(const UnobservedContext& context, const AbsenceEvidence& 
   const bool detected = is_detected(context, track.class_name, expected_centre);
   double rate = 0.0;
   std::string reason;
-  switch (visibility.state) {
-    case TrackState::kGone:
+  switch (visibility.shows) {
+    case DepthShows::kFreeSpace:
       if (absence.by_depth) {
         rate = settings.free_space_rate * visibility.free_space_violation;
         track.free_space_violation_s += absence.dt_s;
@@ -95,34 +107,33 @@ void update_unobserved(const UnobservedContext& context, const AbsenceEvidence& 
       reason = fmt::format("{}: free-space violation {:.0f} %", observation.poses.frame.channel,
                            100.0 * visibility.free_space_violation);
       break;
-    case TrackState::kHidden:
+    case DepthShows::kOccluder:
       reason = fmt::format("occluded by a nearer surface in {}", observation.poses.frame.channel);
       break;
-    case TrackState::kOutOfView:
+    case DepthShows::kNothing:
       reason = fmt::format("not in view of {}, or without depth", observation.poses.frame.channel);
       break;
-    default:
+    case DepthShows::kObject:
       if (absence.by_recognition)
         rate = visibility.is_boundary_continued ? settings.continuation_rate : detected ? 0.0 : settings.missed_rate;
       reason = fmt::format("not recognised by {}, whose depth agrees", observation.poses.frame.channel);
   }
-  if (replaced && visibility.state != TrackState::kOutOfView) {
+  if (replaced && visibility.shows != DepthShows::kNothing) {
     if (absence.by_depth) rate += settings.replaced_rate;
     reason += ", where something else is";
   }
   if (track.pose.filter().moving() && unseen_s > context.coast_s) {
     if (absence.by_recognition)
-      rate +=
-          visibility.state == TrackState::kHidden ? 0.25 * settings.moving_missed_rate : settings.moving_missed_rate;
+      rate += (visibility.shows == DepthShows::kOccluder ? 0.25 : 1.0) * settings.moving_missed_rate;
     reason += "; it moved when it was seen last";
   }
   if (track.id == 0 && absence.by_recognition) rate += settings.candidate_rate;
   track.log_odds -= absence.dt_s * rate;
   // The last observer sets the state for a short time after its observation, where several cameras see the place.
   constexpr double kLastObserverHold_s = 0.1;
-  const bool has_evidence = absence.by_recognition || visibility.state != TrackState::kUnrecognised;
+  const bool has_evidence = absence.by_recognition || visibility.shows != DepthShows::kObject;
   if (has_evidence && (track.last_seen.channel == observation.poses.frame.channel || unseen_s > kLastObserverHold_s)) {
-    track.state = visibility.state == TrackState::kGone ? TrackState::kUnrecognised : visibility.state;
+    track.state = state_of(visibility.shows);
     track.reason = reason;
   }
   if (track.log_odds < settings.delete_log_odds) {

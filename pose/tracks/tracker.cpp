@@ -81,8 +81,8 @@ TimeOrder WorldClock::classify(const StampedFrame& frame) {
   } else if (newest_ && classify_forward_jump(newest_->utime, frame, utime) == TimeOrder::kLate) {
     return TimeOrder::kLate;
   }
-  // Known or plausible by its own camera; now against the other cameras: 30 results in a row that are too old mean that
-  // the newest one's camera has ended.
+  // Known or plausible by its own camera, which may have changed the offset; now against the other cameras: 30 results
+  // in a row that are too old mean that the newest one's camera has ended.
   const std::int64_t now = shifted(frame.id.utime, offset_us_);
   if (!newest_ || seconds_between(now, newest_->utime) <= kMaxOvertakenS) return TimeOrder::kNext;
   ++stale_results_;
@@ -116,7 +116,8 @@ TimeOrder WorldClock::classify_backward_jump(const Camera& camera, const Stamped
   const std::int64_t last_utime = camera.clock.utime;
   if (!is_restarted(camera.number, frame.number)) {
     const auto unconfirmed = unconfirmed_.find(frame.id.channel);
-    const std::int64_t first = unconfirmed == unconfirmed_.end() ? utime : unconfirmed->second;
+    const std::int64_t first =
+        unconfirmed == unconfirmed_.end() ? utime : unconfirmed->second;  // before it is replaced
     if (!confirm_jump(last_utime, frame.id, utime)) return TimeOrder::kLate;
     if (is_sequence_higher(camera.number, frame.number)) {
       warn(

@@ -43,7 +43,7 @@ std::vector<EquivalentPose> find_equivalent_poses(const ObjectObservation& obser
     const Eigen::Isometry3d rotated = T_camera_object * motion;
     const HandleObservation there = handle.observe_at(rotated);
     const double log_ratio =
-        kEvidenceTempering * kLogRatio / kObservationCells * there.points * (there.support() - observed.support());
+        kEvidenceTempering * kLogRatio / kObservationCells * (there.net_evidence() - observed.net_evidence());
     if (there.can_be_occluded() || log_ratio > kMinLogRatio) poses.push_back({rotated, log_ratio});
   }
   return poses;

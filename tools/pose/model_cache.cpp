@@ -54,6 +54,7 @@ void archive_model(Archive& archive, ModelType& model) {
   archive(model.near_alternatives);
   archive(model.partial_alternatives);
   archive(model.unround_points);
+  archive(model.unround_normals);
   archive(model.is_unround_alike);
 }
 
@@ -135,6 +136,7 @@ void check_model(const ObjectModel& model) {
   const std::size_t sides = model.texture.cubes.size();
   require(model.texture.normals.size() == sides && model.texture.colours.size() == sides, "lists of a print");
   require(model.nearly_round || model.unround_points.empty(), "a handle of a shape that is not nearly round");
+  require(model.unround_points.size() == model.unround_normals.size(), "lists of a handle");
 }
 
 int add_library(dl_phdr_info* info, std::size_t /*size*/, void* names) {

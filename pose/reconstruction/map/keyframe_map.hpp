@@ -116,7 +116,7 @@ class KeyframeMap {
   MapSettings settings_;
   std::vector<Keyframe> keyframes_;
   std::vector<PoseEdge> edges_;
-  std::vector<int> graph_distances_;  ///< number of edges from each keyframe to the last one
+  std::vector<int> graph_distances_;  ///< number of edges from each keyframe to the last one; -1: not connected
   Submap local_;
 };
 

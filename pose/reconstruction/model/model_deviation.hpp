@@ -34,8 +34,8 @@ cv::Mat render_visible_mask(const Mesh& mesh, const RgbdFrame& frame, const Eige
 /// fused into the model violates it in all views in which it has gone.
 double free_space_violation(const Mesh& mesh, const Take& take, const std::vector<MaskedKeyframe>& views, int threads);
 
-/// Maximum for a clean model: in the development takes clean ones had at most 0.004, those with a fused hand or table
-/// at least 0.06.
+/// Maximum for a clean model: in the takes of `hs-render takes --development`, on which settings are chosen, clean ones
+/// had at most 0.004, those with a fused hand or table at least 0.06.
 constexpr double kMaxFreeSpaceViolation = 0.02;
 
 }  // namespace houghstream::reconstruction

@@ -30,7 +30,7 @@ struct TakeMapperSettings {
 struct TakeMapperStatus {
   TakeMapperState state = TakeMapperState::kChoosing;
   std::string message;  ///< message for a person, one line
-  ViewCoverage seen{};
+  ViewCoverage seen{};  ///< directions from which the object was observed
   int frames = 0;
   int keyframes = 0;
   cv::Rect box_px;  ///< box of the object in the last frame; empty where it is not known
@@ -77,7 +77,7 @@ class TakeMapper {
   LevelSettings levels_;
   Motion motion_ = Motion::kUnknown;
   MotionClassifier motion_classifier_;    ///< since the frame in which the object was selected
-  StaticShadingDetector static_shading_;  ///< while the object turns
+  StaticShadingDetector static_shading_;  ///< shade and highlights, which stay in place while the object turns
   FrameFollower follower_;
   cv::Size size_;  ///< size of all frames, pixels
   int first_number_ = 0;
