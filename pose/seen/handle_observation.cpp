@@ -81,11 +81,24 @@ HandleObservation HandleObserver::observe_at(const Eigen::Isometry3d& T_camera_o
     const cv::Point nearest_px(cvRound(std::clamp(pixel.x(), -1.0, 1.0 * image.width)),
                                cvRound(std::clamp(pixel.y(), -1.0, 1.0 * image.height)));
     if (!image.contains(nearest_px)) continue;
-    const double evidence =
-        foreground_->at(nearest_px, at.z(), std::isnan(foreground_->rendered().depth_at(nearest_px)));
+    const double evidence = evidence_at(nearest_px, at.z());
     (evidence > 0.0 ? observed.agreeing : observed.contradicting) += std::abs(evidence);
   }
   return observed;
+}
+
+double HandleObserver::evidence_at(const cv::Point& at_px, double model_depth) const {
+  const auto evidence = [&](const cv::Point& pixel) {
+    return foreground_->at(pixel, model_depth, std::isnan(foreground_->rendered().depth_at(pixel)));
+  };
+  double strongest = evidence(at_px);
+  if (std::isnan(foreground_->rendered().depth_at(at_px))) return strongest;
+  const cv::Rect around =
+      cv::Rect(at_px.x - 1, at_px.y - 1, 3, 3) & cv::Rect(cv::Point(), observation_.frame.depth.size());
+  for (int y = around.y; y < around.br().y && strongest < 0.0; ++y) {
+    for (int x = around.x; x < around.br().x; ++x) strongest = std::max(strongest, evidence({x, y}));
+  }
+  return strongest;
 }
 
 std::optional<Eigen::Isometry3d> HandleObserver::find_turn() const {

@@ -39,6 +39,10 @@ class HandleObserver {
   std::optional<Eigen::Isometry3d> find_turn() const;
 
  private:
+  /// Returns the evidence for a point of the handle. Where it lies before the rest of the object, which has its colour,
+  /// depth alone tells them apart, and is blurred by a pixel: a neighbour may show it.
+  double evidence_at(const cv::Point& at_px, double model_depth) const;
+
   const ObjectObservation& observation_;
   Eigen::Isometry3d T_camera_object_;
   std::optional<ForegroundEvidence> foreground_;  ///< nothing without a handle
