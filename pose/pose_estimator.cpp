@@ -264,6 +264,29 @@ bool is_less_probable(const ObjectPose& a, const ObjectPose& b) {
   return probability_a < probability_b || (probability_a == probability_b && &b < &a);
 }
 
+/// Compares each pose with the surest of its class in the frame, among those of the frame and the known ones.
+void compare_instances(const Detections& detections, const PoseSettings& settings, const ObjectPoses& known,
+                       std::vector<ObjectPose>& poses) {
+  std::map<std::string, const ObjectPose*> surest;
+  const auto add = [&](const std::vector<ObjectPose>& seen) {
+    for (const ObjectPose& pose : seen) {
+      if (!pose.T_camera_object || !pose.chroma) continue;
+      const ObjectPose*& best = surest[pose.class_name];
+      if (best == nullptr || pose.shape_quality > best->shape_quality) best = &pose;
+    }
+  };
+  add(known.poses);
+  add(poses);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    ObjectPose& pose = poses[i];
+    if (!pose.T_camera_object || !pose.chroma) continue;
+    const ObjectPose& surer = *surest.at(pose.class_name);
+    if (&surer != &pose)
+      compare_with_instance(surer, detections.detections[i].reported, class_quality_of(settings, pose.class_name),
+                            pose);
+  }
+}
+
 /// Withholds the less probable of two poses of one object, as of two detections of it, or of two classes that look
 /// alike.
 void withhold_duplicates(const PoseEstimator& estimator, const RgbdFrame& frame, std::vector<ObjectPose>& poses) {
@@ -371,6 +394,7 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
     clock.mark("pose.print");
   }
   withhold_duplicates(*this, frame, result.poses);
+  compare_instances(detections, settings, known, result.poses);
   clock.mark("pose.print");
 
   result.stages.insert(result.stages.end(), clock.times().begin(), clock.times().end());

@@ -1,5 +1,9 @@
 #include "pose/verification/pose_decision.hpp"
 
+#include <algorithm>
+
+#include "pipeline/base/logit.hpp"
+
 namespace houghstream {
 namespace {
 
@@ -7,6 +11,31 @@ namespace {
 /// images of furnished rooms, with 21 objects, 34 detections without a pose stay reported from 0.5 on, 25 of them
 /// false, and 27 from 0.65 on, with the same true ones.
 constexpr float kRefutedBelow = 0.65F;
+
+constexpr double kQualityMargin = 1e-6;  // qualities differ down to this from 0 and 1
+
+/// Sets the status by the qualities, and returns whether the pose is published. Otherwise it is kRefuted, or for the
+/// caller to give a reason.
+bool update_status(bool reported, const QualitySettings& quality, ObjectPose& pose) {
+  const float minimum = reported ? quality.min_quality : quality.min_candidate_quality;
+  if (pose.shape_quality >= minimum) {
+    pose.status = pose.quality >= minimum ? PoseStatus::kValid : PoseStatus::kValidUpToSymmetry;
+    return true;
+  }
+  const float presence = presence_probability(pose.detection_score, pose.shape_quality, quality.presence);
+  pose.status = reported && presence < kRefutedBelow ? PoseStatus::kRefuted : PoseStatus::kInvalid;
+  return false;
+}
+
+/// Returns the distance between the measured chroma of two objects over the spread of plain surfaces in changing light,
+/// with the second's brought to the first's lightness: where a light scales X, Y and Z, chroma goes with L* + 16.
+double instance_difference(const ChromaPair& pair, const ChromaPair& other) {
+  constexpr double kPlainStddev = 10.0;  // of a* and b*, as for a comparison with the model
+  constexpr double kBlack = 16.0;
+  constexpr double kMaxRatio = 2.0;
+  const double ratio = std::clamp((pair.lightness + kBlack) / (other.lightness + kBlack), 1.0 / kMaxRatio, kMaxRatio);
+  return (pair.measured - ratio * other.measured).norm() / kPlainStddev;
+}
 
 }  // namespace
 
@@ -17,16 +46,25 @@ void decide_status(const PoseEvidence& evidence, const Eigen::Isometry3d& T_came
   pose.free_space_violation = evidence.depth.free_space_violation();
   pose.shape_quality = shape_quality(terms, quality);
   pose.quality = pose.shape_quality * evidence.texture_probability;
-  const float presence = presence_probability(evidence.detection_score, pose.shape_quality, quality.presence);
-  const float minimum = reported ? quality.min_quality : quality.min_candidate_quality;
-  if (pose.shape_quality >= minimum) {
-    pose.status = pose.quality >= minimum ? PoseStatus::kValid : PoseStatus::kValidUpToSymmetry;
+  const bool published = update_status(reported, quality, pose);
+  if (published) {
     pose.T_camera_object = T_camera_object;
-  } else if (reported && presence < kRefutedBelow) {
-    pose.status = PoseStatus::kRefuted;
-  } else {
+  } else if (pose.status != PoseStatus::kRefuted) {
     pose.status = find_rejection_reason(terms, quality, evidence.colour.has_value());
   }
+}
+
+void compare_with_instance(const ObjectPose& surer, bool reported, const QualitySettings& quality, ObjectPose& pose) {
+  const double excess =
+      instance_difference(*pose.chroma, *surer.chroma) + quality.mean_of_correct.chroma_difference;  // negated mean
+  const double penalty = std::max(0.0, quality.weights.chroma_difference * excess);
+  const double log_odds = logit(static_cast<double>(pose.shape_quality), kQualityMargin) - penalty;
+  const float texture = texture_probability_of(pose);
+  pose.shape_quality = static_cast<float>(logistic(log_odds));
+  pose.quality = pose.shape_quality * texture;
+  if (update_status(reported, quality, pose)) return;
+  if (pose.status != PoseStatus::kRefuted) pose.status = PoseStatus::kRejectedByColour;
+  pose.T_camera_object.reset();
 }
 
 float texture_probability_of(const ObjectPose& pose) {

@@ -12,6 +12,11 @@ namespace houghstream {
 void decide_status(const PoseEvidence& evidence, const Eigen::Isometry3d& T_camera_object, bool reported,
                    const QualitySettings& quality, ObjectPose& pose);
 
+/// Lowers the qualities of a published pose where its object differs in chroma from a surer one of its class in the
+/// same frame: both are seen by one camera in one light, so that objects of one model look alike there, whatever the
+/// camera makes of colours. A pose that falls below its minimum is rejected by colour. Both poses have a chroma.
+void compare_with_instance(const ObjectPose& surer, bool reported, const QualitySettings& quality, ObjectPose& pose);
+
 /// Returns PoseEvidence::texture_probability of a decided pose, for one that continues it.
 float texture_probability_of(const ObjectPose& pose);
 

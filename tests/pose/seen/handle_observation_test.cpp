@@ -29,6 +29,19 @@ TEST(HandleObservation, DepthAloneFindsTheHandleOfAModelWithoutColours) {
   EXPECT_LT(degrees_between(*turned, scene.truth), kSearchStep_deg);
 }
 
+TEST(HandleObservation, AHandleThatPointsAtTheCameraIsFoundThoughDepthBlursIt) {
+  MugScene scene(kBefore_deg);
+  const MugScene body(kBehind_deg);
+  for (int y = 0; y < scene.frame.depth.rows; ++y) {
+    for (int x = 1; x < scene.frame.depth.cols; x += 2)
+      scene.frame.depth.at<float>(y, x) = body.frame.depth.at<float>(y, x);
+  }
+  EXPECT_TRUE(scene.handle_at(kBefore_deg).is_visible());
+  const std::optional<Eigen::Isometry3d> turned = scene.turn_from(kBehind_deg);
+  ASSERT_TRUE(turned.has_value());
+  EXPECT_LT(degrees_between(*turned, scene.truth), kSearchStep_deg);
+}
+
 TEST(HandleObservation, AHiddenHandleIsSoughtNowhereElse) {
   const MugScene scene(kBehind_deg);
   EXPECT_FALSE(scene.turn_from(kBehind_deg).has_value());

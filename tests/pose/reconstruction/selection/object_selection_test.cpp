@@ -20,7 +20,7 @@ TEST(ObjectChoice, FindsWhatStandsInTheMiddle) {
   ASSERT_TRUE(choice.object) << choice.reason;
   const Eigen::Isometry3d T = test_scene::camera_at(0.4, 0.6, 0.7);
   EXPECT_NEAR(choice.object->height_m, 0.16, 0.005);
-  EXPECT_LT(std::abs(choice.object->plane.height(T.translation())), 0.002);  // the table's middle
+  EXPECT_LT(std::abs(choice.object->plane.signedDistance(T.translation())), 0.002);  // the table's middle
   EXPECT_LT((choice.object->T_camera_stand.translation() - T.translation()).norm(), 0.03);
 }
 
