@@ -5,8 +5,8 @@
 
 namespace houghstream::test_scene {
 
-inline constexpr double kBeside_deg = 0.0;   // azimuth at which the handle is to the right of the mug
-inline constexpr double kBehind_deg = 90.0;  // azimuth at which the mug hides it
+inline constexpr double kBeside_deg = 0.0;    // azimuth at which the handle is to the right of the mug
+inline constexpr double kBehind_deg = 90.0;   // azimuth at which the mug hides it
 inline constexpr double kBefore_deg = -90.0;  // azimuth at which it points at the camera
 inline const DepthTolerance kHandleTolerance{0.008, {}};
 

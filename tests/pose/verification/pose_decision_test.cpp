@@ -13,7 +13,12 @@ ObjectPose seen_as(const Eigen::Vector2d& chroma, double lightness, float qualit
   pose.status = PoseStatus::kValid;
   pose.shape_quality = quality;
   pose.quality = 0.9F * quality;
-  pose.chroma = ChromaPair{"bowl", {0.0, 15.0}, chroma, lightness, quality};
+  ChromaPair& pair = pose.chroma.emplace();
+  pair.class_name = pose.class_name;
+  pair.model = {0.0, 15.0};
+  pair.measured = chroma;
+  pair.lightness = lightness;
+  pair.probability = quality;
   return pose;
 }
 
