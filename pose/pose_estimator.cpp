@@ -394,7 +394,7 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
     clock.mark("pose.print");
   }
   withhold_duplicates(*this, frame, result.poses);
-  compare_instances(detections, settings, known, result.poses);
+  if (settings.compare_instances) compare_instances(detections, settings, known, result.poses);
   clock.mark("pose.print");
 
   result.stages.insert(result.stages.end(), clock.times().begin(), clock.times().end());

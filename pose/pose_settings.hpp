@@ -27,6 +27,7 @@ struct PoseSettings {
   RotationSearchSettings rotation_search;
   VerificationSettings verification;
   bool learn_camera_colours = true;  ///< models are brought to the camera's colours before their chroma is compared
+  bool compare_instances = true;     ///< poses of one class in a frame are compared in chroma (compare_with_instance)
   QualitySettings quality;
   std::map<std::string, QualitySettings> class_quality;  ///< learnt for one class, by name; of the others: `quality`
   float min_score = 0.1F;                                ///< minimum score of a detection whose pose is estimated

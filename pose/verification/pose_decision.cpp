@@ -1,6 +1,7 @@
 #include "pose/verification/pose_decision.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "pipeline/base/logit.hpp"
 
@@ -27,14 +28,19 @@ bool update_status(bool reported, const QualitySettings& quality, ObjectPose& po
   return false;
 }
 
-/// Returns the distance between the measured chroma of two objects over the spread of plain surfaces in changing light,
-/// with the second's brought to the first's lightness: where a light scales X, Y and Z, chroma goes with L* + 16.
-double instance_difference(const ChromaPair& pair, const ChromaPair& other) {
-  constexpr double kPlainStddev = 10.0;  // of a* and b*, as for a comparison with the model
+/// Returns the distance of an object's measured chroma from what a surer one of its model lets expect, over the spread
+/// of plain surfaces in changing light. The surer one's chroma is brought to the object's lightness (where a light
+/// scales X, Y and Z, chroma goes with L* + 16), and to the side that the object shows, as the camera renders colours.
+double instance_difference(const ChromaPair& surer, const ChromaPair& pair, const ChromaMap& camera) {
+  constexpr double kPlainStddev = 10.0;     // of a* and b*, as for a comparison with the model
+  constexpr double kGainUncertainty = 0.5;  // of the camera's saturation
   constexpr double kBlack = 16.0;
   constexpr double kMaxRatio = 2.0;
-  const double ratio = std::clamp((pair.lightness + kBlack) / (other.lightness + kBlack), 1.0 / kMaxRatio, kMaxRatio);
-  return (pair.measured - ratio * other.measured).norm() / kPlainStddev;
+  const double ratio = std::clamp((pair.lightness + kBlack) / (surer.lightness + kBlack), 1.0 / kMaxRatio, kMaxRatio);
+  const Eigen::Vector2d other_side =
+      camera.apply(pair.model, pair.lightness) - camera.apply(surer.model, pair.lightness);
+  const double stddev = std::hypot(kPlainStddev, kGainUncertainty * other_side.norm());
+  return (pair.measured - ratio * surer.measured - other_side).norm() / stddev;
 }
 
 }  // namespace
@@ -55,8 +61,8 @@ void decide_status(const PoseEvidence& evidence, const Eigen::Isometry3d& T_came
 }
 
 void compare_with_instance(const ObjectPose& surer, bool reported, const QualitySettings& quality, ObjectPose& pose) {
-  const double excess =
-      instance_difference(*pose.chroma, *surer.chroma) + quality.mean_of_correct.chroma_difference;  // negated mean
+  const double excess = instance_difference(*surer.chroma, *pose.chroma, pose.camera_colours) +
+                        quality.mean_of_correct.chroma_difference;  // negated mean
   const double penalty = std::max(0.0, quality.weights.chroma_difference * excess);
   const double log_odds = logit(static_cast<double>(pose.shape_quality), kQualityMargin) - penalty;
   const float texture = texture_probability_of(pose);

@@ -47,6 +47,14 @@ TEST(CompareWithInstance, OneOfTheSameColourKeepsItsQualityInTheShadeToo) {
   }
 }
 
+TEST(CompareWithInstance, OneThatShowsAnotherSideIsComparedWithThatSide) {
+  ObjectPose back = seen_as({3.0, -30.0}, 50.0, 0.94F);
+  back.chroma->model = {-4.0, -33.0};
+  EXPECT_EQ(beside_surer(back).status, PoseStatus::kValid);
+  back.chroma->measured = {40.0, 20.0};
+  EXPECT_EQ(beside_surer(back).status, PoseStatus::kRefuted);
+}
+
 TEST(CompareWithInstance, TheDetectionIsRefutedUnlessItsObjectIsThereWhateverItsPose) {
   EXPECT_EQ(beside_surer(seen_as({0.7, 1.9}, 46.0, 0.94F)).status, PoseStatus::kRefuted);
   QualitySettings hard_to_pose;

@@ -16,6 +16,7 @@ PoseSettings unfiltered_settings(const PosedModels& models, int threads) {
   PoseSettings settings;
   settings.threads = threads;
   settings.learn_camera_colours = false;  // off, as scores are learnt: EvidenceSettings
+  settings.compare_instances = false;     // qualities are learnt of the evidence for one pose
   settings.model.vote_centres = models.vote_centres;
   settings.model.symmetries = models.symmetries;
   settings.model.shape_symmetries = models.shape_symmetries;
