@@ -390,22 +390,27 @@ void update_from_detections(const Detections& detections, const DetectionAssocia
   }
 }
 
-/// Returns the index into `followed_frame` of the detected object whose last recheck lies farthest back, if one is due
-/// or its pose is doubtful; else -1.
+/// Returns the index into `followed_frame` of the detected object whose recheck is most overdue, or -1 where none is
+/// due. A doubtful pose is rechecked more often: one that following started the wrong way round stays so until then.
 int choose_recheck(const DetectionAssociation& association, const FollowerSettings& settings, FollowedCamera& camera) {
+  constexpr double kDoubtfulWeight = 3.0;
   const FollowedFrame& followed_frame = association.followed_frame;
   FollowedObject* selected = nullptr;
   int place = -1;
+  double longest_s = 0.0;
   for (const int match : association.matches) {
     FollowedObject* object =
         match >= 0 ? find_followed(followed_frame.numbers[static_cast<std::size_t>(match)], camera) : nullptr;
     if (object == nullptr) continue;
-    const float quality = followed_frame.poses[static_cast<std::size_t>(match)].pose.shape_quality;
-    const double wait_s = quality < settings.doubtful_quality ? 0.0 : settings.recheck_interval_s;
-    if (seconds_between(object->recheck_us, followed_frame.clock_us) < wait_s) continue;
-    if (selected != nullptr && selected->recheck_us <= object->recheck_us) continue;
+    const bool is_doubtful =
+        followed_frame.poses[static_cast<std::size_t>(match)].pose.quality < settings.doubtful_quality;
+    const double waited_s = seconds_between(object->recheck_us, followed_frame.clock_us);
+    if (waited_s < (is_doubtful ? 0.0 : settings.recheck_interval_s)) continue;
+    const double weighted_s = (is_doubtful ? kDoubtfulWeight : 1.0) * waited_s;
+    if (selected != nullptr && weighted_s <= longest_s) continue;
     selected = object;
     place = match;
+    longest_s = weighted_s;
   }
   if (selected != nullptr) selected->recheck_us = followed_frame.clock_us;
   return place;

@@ -36,7 +36,8 @@ struct FollowerSettings {
   double missed_after_s = 1.0;  ///< time without a detection from which on such a run counts
   /// Time after which a detection's pose is estimated again, beside the followed one.
   double recheck_interval_s = 0.15;
-  float doubtful_quality = 0.85F;  ///< quality below which the next detection is estimated at once
+  /// A pose of lower quality is rechecked whenever its object is detected, and before surer ones.
+  float doubtful_quality = 0.85F;
   /// Log odds of quality by which the new pose must be better to replace the followed one.
   double better_log_odds = 0.3;
   double velocity_gain = 0.5;  ///< fraction by which the last step moves the velocity

@@ -339,6 +339,30 @@ TEST(ObjectFollower, AWrongTurnIsNoticedByLookingAsIfItWereNotFollowed) {
   EXPECT_LT(handle_error_after_a_turn({}), 0.45) << "as good as a single look at it";
 }
 
+TEST(ObjectFollower, ADoubtfulPoseIsRecheckedBeforeSureOnes) {
+  PoseSettings settings;
+  settings.quality.min_quality = 0.01F;
+  settings.class_quality["box"] = settings.quality;
+  settings.class_quality["box"].texture.bias = 20.0;  // sure, without a texture
+  const PoseEstimator lenient({{"box", cereal_box()}, {"mug", mug()}}, settings);
+  Film film = box_and_mug();
+  ObjectFollower follower;
+  const auto look = [&] {
+    const RgbdFrame frame = film.next();
+    follower.follow(lenient, frame);
+    follower.process_detections(lenient, frame, film.detected(frame.id));
+  };
+  look();
+  film.things[1].T_table_object.rotate(Eigen::AngleAxisd(1.6, Eigen::Vector3d::UnitZ()));
+  film.utime += 20 * kPeriod;
+  look();
+  const ObjectPoses poses = follower.follow(lenient, film.next()).value();
+  ASSERT_EQ(valid_ones(poses), 2);
+  EXPECT_GT(poses.poses[0].quality, 0.9F);
+  const Eigen::Vector3d handle = poses.poses[1].T_camera_object->linear().col(0);
+  EXPECT_LT(std::acos(std::min(1.0, handle.dot(film.truth(1).linear().col(0)))), 0.45);
+}
+
 TEST(ObjectFollower, PosesStayRotationsHoweverOftenADetectionReplacesThem) {
   FollowerSettings eager;
   eager.recheck_interval_s = 0.0;
