@@ -75,6 +75,11 @@ def check_loading(page):
 LATE_RESULTS = """(() => { const listen = window.promptListen = EventSource.prototype.addEventListener;
   EventSource.prototype.addEventListener = function (name, act) { listen.call(this, name, event => setTimeout(() => act(event), 300)); };
   connect(); })()"""
+# A picture that waits for its results is dropped, as at a new connection, and these come all the same. Are they shown?
+LATER_THAN_DROPPED = """(async () => { while (!colour.next) await new Promise(done => setTimeout(done, 5));
+  const number = pictured, news = { ...frame };
+  colour.again = false; colour.drop(); expectFrame(news, number);
+  return frame === news; })()"""
 PROMPT_RESULTS = "(() => { EventSource.prototype.addEventListener = window.promptListen; connect(); })()"
 
 
@@ -87,6 +92,8 @@ def check_same_frame(page):
         assert len({score for _, score in told}) >= 5, (when, told)
         others = [pair for pair in told if pair[0] != pair[1]]
         assert not others, (when, others)
+        if when == LATE_RESULTS:
+            assert not page.value(LATER_THAN_DROPPED)
 
 
 def check_chart(page):
