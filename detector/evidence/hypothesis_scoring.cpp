@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -170,6 +171,15 @@ Evidence evidence_of_votes(const Forest& forest, const Hypothesis& hypothesis, c
   return evidence;
 }
 
+/// Returns the tasks of the subset for which `is_wanted` holds.
+template <typename IsWanted>
+TaskIndices select(const TaskIndices& subset, const IsWanted& is_wanted) {
+  TaskIndices selected;
+  selected.reserve(subset.size());
+  std::copy_if(subset.begin(), subset.end(), std::back_inserter(selected), is_wanted);
+  return selected;
+}
+
 /// Returns the tasks with the `count` largest values; of equal values the first.
 template <typename ValueOf>
 TaskIndices largest(TaskIndices subset, int count, const ValueOf& value_of) {
@@ -246,30 +256,22 @@ void HypothesisScorer::set_match(const PlacedTemplate& placed, Evidence& evidenc
 /// Returns the tasks whose score after the first comparison is at least kLikely.
 TaskIndices find_likely(const std::vector<ScoringTask>& tasks) {
   constexpr float kLikely = 0.5F;  // score
-  TaskIndices likely;
-  likely.reserve(tasks.size());
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
+  return select(all_tasks(tasks), [&](std::size_t i) {
     const ScoredHypothesis& scored = tasks[i].scored;
-    if (scored.evidence.view != Evidence::kNoView && scored.detection.score >= kLikely) likely.push_back(i);
-  }
-  return likely;
+    return scored.evidence.view != Evidence::kNoView && scored.detection.score >= kLikely;
+  });
 }
 
 /// Chooses the tasks of the subset that are compared with views of all attitudes: of classes that were taught in
-/// several
-/// (`attitude_factor` above 1) and with many votes, the `maximum` with the highest vote_logit().
+/// several (`attitude_factor` above 1) and with many votes, the `maximum` with the highest vote_logit().
 TaskIndices choose_sampled(const std::vector<ScoringTask>& tasks, const TaskIndices& subset, int maximum) {
   // This is a fraction of the nominal vote mass: a third of the object, seen as well as in training.
   constexpr float kManyVotes = 0.3F;
-  TaskIndices eligible;
-  eligible.reserve(subset.size());
-  for (const std::size_t i : subset) {
+  TaskIndices eligible = select(subset, [&](std::size_t i) {
     const ScoringTask& task = tasks[i];
     const bool has_templates = task.input->index.forest().scoring == Scoring::kEvidence;
-    if (!has_templates || task.attitude_factor == 1.0F || task.scored.evidence.relative_vote_mass < kManyVotes)
-      continue;
-    eligible.push_back(i);
-  }
+    return has_templates && task.attitude_factor != 1.0F && task.scored.evidence.relative_vote_mass >= kManyVotes;
+  });
   return largest(std::move(eligible), maximum, [&](std::size_t i) { return vote_logit(tasks[i].scored.evidence); });
 }
 
@@ -320,13 +322,10 @@ TaskIndices choose_refined(const std::vector<ScoringTask>& tasks, const TaskIndi
   // The limit is this low because votes bring occluded objects templates that hardly match: half hidden boxes of
   // YCB-V's scene 50 that end at 0.6 have 0.02 here.
   constexpr float kHopeless = 0.005F;
-  TaskIndices eligible;
-  eligible.reserve(subset.size());
-  for (const std::size_t i : subset) {
+  TaskIndices eligible = select(subset, [&](std::size_t i) {
     const ScoredHypothesis& scored = tasks[i].scored;
-    if (scored.evidence.view == Evidence::kNoView || scored.detection.score < kHopeless) continue;
-    eligible.push_back(i);
-  }
+    return scored.evidence.view != Evidence::kNoView && scored.detection.score >= kHopeless;
+  });
   return largest(std::move(eligible), maximum, [&](std::size_t i) { return tasks[i].scored.detection.score; });
 }
 
@@ -489,12 +488,9 @@ TaskIndices find_unexplained(const std::vector<ScoringTask>& tasks, const TaskIn
       return cells->fraction_in(other.second) > kExplained;
     });
   };
-  TaskIndices left;
-  left.reserve(tasks.size());
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    if (!std::binary_search(likely.begin(), likely.end(), i) && !is_explained(i)) left.push_back(i);
-  }
-  return left;
+  return select(all_tasks(tasks), [&](std::size_t i) {
+    return !std::binary_search(likely.begin(), likely.end(), i) && !is_explained(i);
+  });
 }
 
 /// Returns whether the spheres about two objects meet.

@@ -104,10 +104,7 @@ StoreWatcherBase::StoreWatcherBase(fs::path folder, Load load) : folder_(std::mo
     return;
   }
   const ObjectStore store = read_store(folder_);
-  Loaded<void> loaded = load_(store);
-  const std::string problem = describe_faults(store, loaded.faults);
-  if (!problem.empty()) refuse(std::exchange(taken_, ""), problem);
-  adopt(store, std::move(loaded));
+  if (!take(store, load_(store), taken_)) taken_.clear();
 }
 
 StoreWatcherBase::~StoreWatcherBase() {
@@ -185,11 +182,7 @@ void StoreWatcherBase::load(const std::string& state) {
     const ObjectStore store = read_store(folder_);
     Loaded<void> loaded = load_(store);
     if (state_of_store(folder_) != state) return;  // parts of two stores were read
-    const std::string problem = describe_faults(store, loaded.faults);
-    const bool is_first = current() == nullptr;
-    if (!problem.empty()) refuse(state, problem);
-    if (problem.empty() || is_first) adopt(store, std::move(loaded));
-    if (!problem.empty()) return;
+    if (!take(store, std::move(loaded), state)) return;
     taken_ = state;
   } catch (const WorkCancelled&) {
     return;
@@ -201,6 +194,16 @@ void StoreWatcherBase::load(const std::string& state) {
     return;
   }
   set_problem("");
+}
+
+/// Adopts what was loaded, and refuses its state where groups are missing, which are adopted only where nothing is
+/// known yet. Returns whether all of the store was adopted.
+bool StoreWatcherBase::take(const ObjectStore& store, Loaded<void> loaded, const std::string& state) {
+  const std::string problem = describe_faults(store, loaded.faults);
+  const bool is_first = current() == nullptr;
+  if (!problem.empty()) refuse(state, problem);
+  if (problem.empty() || is_first) adopt(store, std::move(loaded));
+  return problem.empty();
 }
 
 /// A state that stays the same is loaded again only after a while.

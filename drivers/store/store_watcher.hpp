@@ -69,6 +69,7 @@ class StoreWatcherBase {
   void run(std::chrono::milliseconds period);
   void poll();
   void load(const std::string& state);
+  bool take(const ObjectStore& store, Loaded<void> loaded, const std::string& state);
   void refuse(const std::string& state, const std::string& problem);
   void report_missing_store();
   void adopt(const ObjectStore& store, Loaded<void> loaded);

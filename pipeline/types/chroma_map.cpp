@@ -24,7 +24,7 @@ constexpr double kOutlierVariance = 600.0;  // variance of the chroma of anythin
 constexpr double kMargin = 0.02;            // no evidence is certain
 
 Regressors regressors(const Eigen::Vector2d& model, double lightness) {
-  const double cast = (lightness + 16.0) / 116.0;
+  const double cast = chroma_scale(lightness);
   Regressors out;
   out << model.x(), model.y(), 0.0, 0.0, cast, 0.0,  //
       0.0, 0.0, model.x(), model.y(), 0.0, cast;

@@ -26,6 +26,12 @@ struct CameraChroma {
   std::vector<ChromaPair> objects;
 };
 
+/// Returns by how much a light's cast on a colour of this L* is less than on white: the cube root of the luminance, to
+/// which a* and b* are proportional where a light scales X, Y and Z.
+constexpr double chroma_scale(double lightness) {
+  return (lightness + 16.0) / 116.0;
+}
+
 /// Maps known colours to those that a camera measures under the present light: measured = gain * model + (L* + 16) /
 /// 116 * cast, in the a*b* plane of CIE L*a*b*. Where a light scales X, Y and Z, as in von Kries's model, the cast of a
 /// colour is proportional to the cube root of its luminance, which is (L* + 16) / 116. Lightness itself is not mapped,

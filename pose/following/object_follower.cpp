@@ -455,10 +455,10 @@ void withhold_where_followed(const PoseEstimator& estimator, const FollowedFrame
 /// between the two frames stays the same in the object's own frame.
 void adopt_better_pose(const ObjectPose& pose, const FollowedPose& followed, const FollowerSettings& settings,
                        FollowedObject& object) {
-  constexpr double kMargin = 1e-6;  // small differences between two poses of one object count
   // Quality is compared by shape alone, or with texture, which following does not examine.
-  const double by_shape = logit(pose.shape_quality, kMargin) - logit(followed.pose.shape_quality, kMargin);
-  const double by_all = logit(pose.quality, kMargin) - logit(followed.pose.quality, kMargin);
+  const double by_shape =
+      logit(pose.shape_quality, kQualityMargin) - logit(followed.pose.shape_quality, kQualityMargin);
+  const double by_all = logit(pose.quality, kQualityMargin) - logit(followed.pose.quality, kQualityMargin);
   if (std::max(by_shape, by_all) < settings.better_log_odds) return;
   object.T_camera_object =
       orthonormalised(object.T_camera_object * followed.T_camera_object.inverse() * *pose.T_camera_object);

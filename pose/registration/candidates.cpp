@@ -85,6 +85,19 @@ PoseCandidate find_best_position(const ObjectObservation& observation, const Eig
   return best;
 }
 
+/// Returns the published poses of the class in an earlier frame that lie near the detected centre.
+std::vector<const ObjectPose*> earlier_poses(const ObjectObservation& observation, const std::string& class_name,
+                                             const ObjectPoses& earlier, const WarmStartSettings& settings) {
+  std::vector<const ObjectPose*> poses;
+  const double age_s = seconds_between(earlier.frame.utime, observation.frame.id.utime);
+  if (!(age_s > 0.0 && age_s <= settings.max_age_s)) return poses;
+  for (const ObjectPose& pose : earlier.poses) {
+    if (!pose.T_camera_object || pose.class_name != class_name) continue;
+    if (distance_from_detected(observation, *pose.T_camera_object) <= settings.reach_m) poses.push_back(&pose);
+  }
+  return poses;
+}
+
 }  // namespace
 
 std::vector<RotationCandidate> rotation_clusters(const std::vector<RotationVote>& votes,
@@ -136,23 +149,6 @@ std::vector<PoseCandidate> place_candidates(const ObjectObservation& observation
   candidates.resize(std::min<std::size_t>(candidates.size(), std::max(1, settings.keep)));
   return candidates;
 }
-
-namespace {
-
-/// Returns the published poses of the class in an earlier frame that lie near the detected centre.
-std::vector<const ObjectPose*> earlier_poses(const ObjectObservation& observation, const std::string& class_name,
-                                             const ObjectPoses& earlier, const WarmStartSettings& settings) {
-  std::vector<const ObjectPose*> poses;
-  const double age_s = seconds_between(earlier.frame.utime, observation.frame.id.utime);
-  if (!(age_s > 0.0 && age_s <= settings.max_age_s)) return poses;
-  for (const ObjectPose& pose : earlier.poses) {
-    if (!pose.T_camera_object || pose.class_name != class_name) continue;
-    if (distance_from_detected(observation, *pose.T_camera_object) <= settings.reach_m) poses.push_back(&pose);
-  }
-  return poses;
-}
-
-}  // namespace
 
 std::vector<PoseCandidate> earlier_candidates(const ObjectObservation& observation, const std::string& class_name,
                                               const ObjectPoses& earlier, const WarmStartSettings& settings) {

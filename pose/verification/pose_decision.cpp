@@ -13,8 +13,6 @@ namespace {
 /// false, and 27 from 0.65 on, with the same true ones.
 constexpr float kRefutedBelow = 0.65F;
 
-constexpr double kQualityMargin = 1e-6;  // qualities differ down to this from 0 and 1
-
 /// Sets the status by the qualities, and returns whether the pose is published. Otherwise it is kRefuted, or for the
 /// caller to give a reason.
 bool update_status(bool reported, const QualitySettings& quality, ObjectPose& pose) {
@@ -34,9 +32,9 @@ bool update_status(bool reported, const QualitySettings& quality, ObjectPose& po
 double instance_difference(const ChromaPair& surer, const ChromaPair& pair, const ChromaMap& camera) {
   constexpr double kPlainStddev = 10.0;     // of a* and b*, as for a comparison with the model
   constexpr double kGainUncertainty = 0.5;  // of the camera's saturation
-  constexpr double kBlack = 16.0;
   constexpr double kMaxRatio = 2.0;
-  const double ratio = std::clamp((pair.lightness + kBlack) / (surer.lightness + kBlack), 1.0 / kMaxRatio, kMaxRatio);
+  const double ratio =
+      std::clamp(chroma_scale(pair.lightness) / chroma_scale(surer.lightness), 1.0 / kMaxRatio, kMaxRatio);
   const Eigen::Vector2d other_side =
       camera.apply(pair.model, pair.lightness) - camera.apply(surer.model, pair.lightness);
   const double stddev = std::hypot(kPlainStddev, kGainUncertainty * other_side.norm());

@@ -6,6 +6,8 @@
 
 namespace houghstream {
 
+constexpr double kQualityMargin = 1e-6;  ///< logits of qualities differ down to this from 0 and 1
+
 /// Sets the qualities of `pose` from the evidence for `T_camera_object`, and then either the pose itself or the status
 /// with the reason for its rejection. The object can only be refuted where it was `reported` (see Detection). `quality`
 /// is that of the object's class.
