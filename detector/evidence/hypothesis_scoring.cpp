@@ -99,10 +99,11 @@ std::vector<ScoringTask> list_tasks(const std::vector<GroupHypotheses>& groups);
 Evidence evidence_of_votes(const Forest& forest, const Hypothesis& hypothesis, const Camera& camera);
 void keep_most_promising(const EvidenceSettings& settings, std::vector<ScoringTask>& tasks);
 TaskIndices all_tasks(const std::vector<ScoringTask>& tasks);
-TaskIndices find_likely(const std::vector<ScoringTask>& tasks);
+TaskIndices find_likely(const std::vector<ScoringTask>& tasks, const TaskIndices& all);
 TaskIndices choose_sampled(const std::vector<ScoringTask>& tasks, const TaskIndices& subset, int maximum);
 TaskIndices choose_refined(const std::vector<ScoringTask>& tasks, const TaskIndices& subset, int maximum);
-TaskIndices find_unexplained(const std::vector<ScoringTask>& tasks, const TaskIndices& likely, float explains_from);
+TaskIndices find_unexplained(const std::vector<ScoringTask>& tasks, const TaskIndices& all, const TaskIndices& likely,
+                             float explains_from);
 bool may_touch(const ScoringTask& a, const ScoringTask& b);
 
 }  // namespace
@@ -125,11 +126,12 @@ GroupCandidates score_by_group(const std::vector<GroupHypotheses>& groups, int t
     for_each(choose_refined(tasks, subset, max_refined), &HypothesisScorer::refine);
     for_each(subset, &HypothesisScorer::complete);
   };
-  for_each(all_tasks(tasks), &HypothesisScorer::compare);
-  const TaskIndices likely = find_likely(tasks);
+  const TaskIndices all = all_tasks(tasks);
+  for_each(all, &HypothesisScorer::compare);
+  const TaskIndices likely = find_likely(tasks, all);
   const auto likely_count = static_cast<int>(likely.size());
   search(likely, likely_count, settings.max_refined);
-  TaskIndices searched = find_unexplained(tasks, likely, settings.explains_from);
+  TaskIndices searched = find_unexplained(tasks, all, likely, settings.explains_from);
   search(searched, settings.max_sampled, std::max(0, settings.max_refined - likely_count));
   searched.insert(searched.end(), likely.begin(), likely.end());
   std::sort(searched.begin(), searched.end());
@@ -254,9 +256,9 @@ void HypothesisScorer::set_match(const PlacedTemplate& placed, Evidence& evidenc
 }
 
 /// Returns the tasks whose score after the first comparison is at least kLikely.
-TaskIndices find_likely(const std::vector<ScoringTask>& tasks) {
+TaskIndices find_likely(const std::vector<ScoringTask>& tasks, const TaskIndices& all) {
   constexpr float kLikely = 0.5F;  // score
-  return select(all_tasks(tasks), [&](std::size_t i) {
+  return select(all, [&](std::size_t i) {
     const ScoredHypothesis& scored = tasks[i].scored;
     return scored.evidence.view != Evidence::kNoView && scored.detection.score >= kLikely;
   });
@@ -468,7 +470,8 @@ void HypothesisScorer::add_rotations(const WeightedViews& views, std::vector<Rot
 
 /// Returns the tasks that are not likely, without those on the surface of a likely one whose score is `explains_from`
 /// or more.
-TaskIndices find_unexplained(const std::vector<ScoringTask>& tasks, const TaskIndices& likely, float explains_from) {
+TaskIndices find_unexplained(const std::vector<ScoringTask>& tasks, const TaskIndices& all, const TaskIndices& likely,
+                             float explains_from) {
   constexpr float kExplained = 0.6F;  // fraction of the surface that is seen
   const auto cells_of = [&](std::size_t i) {
     const Evidence& evidence = tasks[i].scored.evidence;
@@ -488,9 +491,8 @@ TaskIndices find_unexplained(const std::vector<ScoringTask>& tasks, const TaskIn
       return cells->fraction_in(other.second) > kExplained;
     });
   };
-  return select(all_tasks(tasks), [&](std::size_t i) {
-    return !std::binary_search(likely.begin(), likely.end(), i) && !is_explained(i);
-  });
+  return select(
+      all, [&](std::size_t i) { return !std::binary_search(likely.begin(), likely.end(), i) && !is_explained(i); });
 }
 
 /// Returns whether the spheres about two objects meet.
