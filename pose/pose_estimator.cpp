@@ -27,7 +27,7 @@ struct Estimation {
   std::optional<ObjectObservation> observation = std::nullopt;
   std::vector<RotationCandidate> rotations = {};
   std::vector<PoseCandidate> candidates = {};
-  std::vector<RegistrationResult> registered = {};  ///< the candidates
+  std::vector<RegistrationResult> registered = {};  ///< the candidates after coarse registration, in their order
   std::vector<RegistrationResult> selected = {};    ///< the best first
   std::vector<PoseEvidence> evidence = {};          ///< evidence of the selected poses
   std::size_t published = 0;                        ///< index of the selected pose that is published, or would be
@@ -59,9 +59,20 @@ PoseStatus initial_status(const Detection& detection, bool has_model, const Pose
   return PoseStatus::kInvalid;
 }
 
-/// Returns the detections whose pose is estimated; `poses` of the others get the reason why not.
+/// Rejects a weak detection as the one that it repeats was rejected.
+void repeat_rejection(const ObjectPose& rejected, ObjectPose& pose) {
+  ObjectPose repeated = rejected;
+  repeated.detection_score = pose.detection_score;
+  repeated.detection_index = pose.detection_index;
+  repeated.continued_frames = rejected.continued_frames + 1;
+  pose = std::move(repeated);
+}
+
+/// Returns the detections whose pose is estimated; `poses` of the others get the reason why not, or the rejection of an
+/// earlier frame.
 std::vector<Estimation> make_estimations(const Detections& detections, const std::map<std::string, ObjectModel>& models,
-                                         const PoseSettings& settings, std::vector<ObjectPose>& poses) {
+                                         const ObjectPoses& earlier, const PoseSettings& settings,
+                                         std::vector<ObjectPose>& poses) {
   std::vector<Estimation> estimations;
   estimations.reserve(poses.size());
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -69,7 +80,12 @@ std::vector<Estimation> make_estimations(const Detections& detections, const std
     const auto model = models.find(detection.class_name);
     poses[i].status = initial_status(detection, model != models.end(), settings);
     if (poses[i].status != PoseStatus::kInvalid) continue;
-    estimations.push_back({detection, model->second, poses[i]});
+    const ObjectPose* rejected = find_rejected(detection, detections.frame.utime, earlier, settings.warm_start);
+    if (rejected != nullptr) {
+      repeat_rejection(*rejected, poses[i]);
+    } else {
+      estimations.push_back({detection, model->second, poses[i]});
+    }
   }
   return estimations;
 }
@@ -124,7 +140,7 @@ void select_pose(const ObjectPoses& earlier, const PoseSettings& settings, const
     estimation.continued = find_continued(observation, best.T_camera_object, estimation.detection.class_name, earlier,
                                           settings.warm_start);
     if (estimation.continued != nullptr) {
-      estimation.selected = {refine_pose(observation, best.T_camera_object, estimation.rotations, selection)};
+      estimation.selected = {refine_rotation(observation, best, estimation.rotations, selection)};
     } else {
       estimation.selected = select_poses(observation, best, estimation.rotations, selection);
     }
@@ -178,7 +194,7 @@ ObjectPose decide_pose(const Estimation& estimation, const RegistrationResult& r
   return decided;
 }
 
-/// Publishes the pose with the strongest evidence, or the status that names the reason against it.
+/// Decides by the pose with the strongest evidence; some pose was selected.
 void decide_best(const PoseSettings& settings, Estimation& estimation) {
   std::optional<ObjectPose> best;
   for (std::size_t i = 0; i < estimation.selected.size(); ++i) {
@@ -255,8 +271,9 @@ bool are_centres_closer(const std::map<std::string, ObjectModel>& models, const 
   return (centre_a - centre_b).norm() < ratio * std::min(model_a->second.radius, model_b->second.radius);
 }
 
-/// Returns whether `a` is less probable than `b` where both are one object: of one class by all that was seen, of two
-/// by the shape, since the texture that does not tell which way round an object is does not speak for another.
+/// Returns whether `a` is less probable than `b` where both are one object: of one class by its quality, of two classes
+/// by its shape_quality, since the texture tells which way round an object is, not which object it is. Of two that are
+/// equally probable the later one is less probable.
 bool is_less_probable(const ObjectPose& a, const ObjectPose& b) {
   const bool by_shape = a.class_name != b.class_name;
   const float probability_a = by_shape ? a.shape_quality : a.quality;
@@ -298,6 +315,15 @@ void withhold_duplicates(const PoseEstimator& estimator, const RgbdFrame& frame,
              estimator.is_same_object(frame, placed, {other.class_name, *other.T_camera_object});
     });
     if (better != poses.end()) withhold_duplicate(*better, pose);
+  }
+}
+
+/// Remembers where weak detections were searched and rejected, for the next frame (find_rejected).
+void note_rejections(const std::vector<Estimation>& estimations) {
+  for (const Estimation& estimation : estimations) {
+    if (estimation.detection.reported || has_pose(estimation.pose.status)) continue;
+    estimation.pose.rejected_at = estimation.detection.centre_camera;
+    estimation.pose.continued_frames = 0;
   }
 }
 
@@ -359,7 +385,7 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
   const PoseSettings& settings = state_->settings;
   StageClock clock;
   ObjectPoses result = undecided_poses(detections);
-  std::vector<Estimation> estimations = make_estimations(detections, state_->models, settings, result.poses);
+  std::vector<Estimation> estimations = make_estimations(detections, state_->models, earlier, settings, result.poses);
   const FrameContext context = make_frame_context(frame, settings.region, settings.noise);
   ExplainedSurface explained;
   add_explained_surface(known.poses, state_->models, explained);
@@ -395,6 +421,7 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
   }
   withhold_duplicates(*this, frame, result.poses);
   if (settings.compare_instances) compare_instances(detections, settings, known, result.poses);
+  note_rejections(estimations);
   clock.mark("pose.print");
 
   result.stages.insert(result.stages.end(), clock.times().begin(), clock.times().end());

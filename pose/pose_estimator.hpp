@@ -44,14 +44,15 @@ class PoseEstimator {
   /// Returns one ObjectPose per detection, in their order; the times of the stages pose.region, pose.candidates,
   /// pose.registration, pose.choice, pose.verification and pose.print are appended to those of the detections. The
   /// detections must be of this frame (same name). Of two poses of one object (is_same_object) the less probable one is
-  /// withheld (withhold_duplicate). Candidates (Detection::reported is false) come last: one whose surface a published
-  /// pose explains is no object of its own, and is given up with the status kRefuted. Throws std::logic_error for
-  /// another frame, and InputError for an invalid frame.
+  /// withheld (withhold_duplicate). Weak detections (Detection::reported is false) are estimated last: one whose
+  /// surface a published pose explains is no object of its own, and is given up with the status kRefuted. Throws
+  /// std::logic_error for another frame, and InputError for an invalid frame.
   ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections) const;
 
   /// Estimates with the poses of an earlier frame as a warm start: they are candidates beside those of the votes, never
   /// the only ones, so that a wrong pose does not persist and a lost object is found again. Where the best candidate
-  /// continues a sure pose (find_continued), its alternatives by shape are searched again after some frames only.
+  /// continues a sure pose (find_continued), its alternatives by shape are searched again after some frames only. A
+  /// weak detection that was rejected there is rejected again without a search, for some frames (find_rejected).
   /// `remembered` holds the camera's colours learnt from earlier frames (CameraColours::pairs). `known` holds poses of
   /// this frame that are known otherwise: what they explain is no candidate's.
   ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier,

@@ -59,9 +59,12 @@ struct ObjectPose {
   float shape_quality = 0.0F;         ///< the same up to the symmetries of the shape: never below `quality`
   float free_space_violation = 0.0F;  ///< rendered pixels in front of what was measured, 0 to 1
   std::optional<ChromaPair> chroma;   ///< chroma of the model and as measured; not published
-  /// Number of consecutive frames up to this one in which the pose continued another one without a search among its
-  /// alternatives; not published.
+  /// Number of consecutive frames up to this one in which the pose, or its rejection, continued another one without a
+  /// search among its alternatives; not published.
   int continued_frames = 0;
+  /// Detected centre of a weak detection (Detection::reported is false) whose pose was searched and rejected, camera
+  /// frame, metres; not published.
+  std::optional<Eigen::Vector3f> rejected_at;
   ChromaMap camera_colours;  ///< map applied to the model's colours, learnt without it; not published
 };
 

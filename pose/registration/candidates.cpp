@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "pipeline/types/frame_id.hpp"
 #include "pose/model/angles.hpp"
@@ -21,12 +22,12 @@ std::vector<RotationVote> select_usable_votes(const std::vector<RotationVote>& v
   return out;
 }
 
-/// Returns the kernel of two rotations; |a.b| is the cosine of half the angle between them.
-float rotation_kernel(const RotationVote& a, const RotationVote& b) {
+/// Returns the cosine of half the angle between two rotations.
+float half_angle_cosine(const RotationVote& a, const RotationVote& b) {
   return std::abs(a.R_camera_object.dot(b.R_camera_object));
 }
 
-/// Returns the largest eigenvector of the weighted sum of q q^T (Markley et al. 2007, eq. 12).
+/// Returns the eigenvector of the largest eigenvalue of the weighted sum of q q^T (Markley et al. 2007, eq. 12).
 RotationCandidate mean_rotation(const std::vector<RotationVote>& votes) {
   Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
   RotationCandidate mean;
@@ -42,13 +43,13 @@ RotationCandidate mean_rotation(const std::vector<RotationVote>& votes) {
 }
 
 /// Returns the vote with most weight within the radius; ties go to the first.
-std::size_t find_densest_vote(const std::vector<RotationVote>& votes, float min_kernel) {
+std::size_t find_densest_vote(const std::vector<RotationVote>& votes, float min_cosine) {
   std::size_t best = 0;
   float best_weight = -1.0F;
   for (std::size_t i = 0; i < votes.size(); ++i) {
     float weight = 0.0F;
     for (const RotationVote& other : votes)
-      weight += rotation_kernel(votes[i], other) >= min_kernel ? other.weight : 0.0F;
+      weight += half_angle_cosine(votes[i], other) >= min_cosine ? other.weight : 0.0F;
     if (weight > best_weight) {
       best_weight = weight;
       best = i;
@@ -85,12 +86,23 @@ PoseCandidate find_best_position(const ObjectObservation& observation, const Eig
   return best;
 }
 
+bool is_recent(const ObjectPoses& earlier, std::int64_t utime, const WarmStartSettings& settings) {
+  const double age_s = seconds_between(earlier.frame.utime, utime);
+  return age_s > 0.0 && age_s <= settings.max_age_s;
+}
+
+/// Returns the maximum number of frames for which a pose or a rejection of a class is continued. Classes differ, so
+/// that not all are searched again in one frame.
+int max_continued_frames(int maximum, int class_id) {
+  constexpr int kSpread = 4;
+  return maximum > 0 ? maximum + class_id % kSpread : 0;
+}
+
 /// Returns the published poses of the class in an earlier frame that lie near the detected centre.
 std::vector<const ObjectPose*> earlier_poses(const ObjectObservation& observation, const std::string& class_name,
                                              const ObjectPoses& earlier, const WarmStartSettings& settings) {
   std::vector<const ObjectPose*> poses;
-  const double age_s = seconds_between(earlier.frame.utime, observation.frame.id.utime);
-  if (!(age_s > 0.0 && age_s <= settings.max_age_s)) return poses;
+  if (!is_recent(earlier, observation.frame.id.utime, settings)) return poses;
   for (const ObjectPose& pose : earlier.poses) {
     if (!pose.T_camera_object || pose.class_name != class_name) continue;
     if (distance_from_detected(observation, *pose.T_camera_object) <= settings.reach_m) poses.push_back(&pose);
@@ -105,11 +117,11 @@ std::vector<RotationCandidate> rotation_clusters(const std::vector<RotationVote>
   std::vector<RotationVote> remaining = select_usable_votes(votes);
   constexpr double kSelf = 0.9999;  // a vote is always in its own cluster
   const double limit = std::cos(0.5 * settings.cluster_radius_deg * kRadPerDeg);
-  const auto min_kernel = static_cast<float>(std::min(limit, kSelf));
+  const auto min_cosine = static_cast<float>(std::min(limit, kSelf));
   std::vector<RotationCandidate> candidates;
   while (!remaining.empty() && static_cast<int>(candidates.size()) < settings.clusters) {
-    const RotationVote centre = remaining[find_densest_vote(remaining, min_kernel)];
-    const auto far = [&](const RotationVote& vote) { return rotation_kernel(vote, centre) < min_kernel; };
+    const RotationVote centre = remaining[find_densest_vote(remaining, min_cosine)];
+    const auto far = [&](const RotationVote& vote) { return half_angle_cosine(vote, centre) < min_cosine; };
     const auto near_begin = std::stable_partition(remaining.begin(), remaining.end(), far);
     candidates.push_back(mean_rotation({near_begin, remaining.end()}));
     remaining.erase(near_begin, remaining.end());
@@ -118,16 +130,16 @@ std::vector<RotationCandidate> rotation_clusters(const std::vector<RotationVote>
   return candidates;
 }
 
-float vote_support(const std::vector<RotationCandidate>& votes, const Eigen::Isometry3d& T_camera_object,
+float vote_support(const std::vector<RotationCandidate>& modes, const Eigen::Isometry3d& T_camera_object,
                    const InitialSettings& settings) {
   const double width_rad = settings.cluster_radius_deg * kRadPerDeg;
   const Eigen::Quaternionf R_camera_object(Eigen::Quaterniond(T_camera_object.linear()).cast<float>());
   float sum = 0.0F;
   float maximum = 0.0F;
-  for (const RotationCandidate& vote : votes) {
-    const double ratio = static_cast<double>(R_camera_object.angularDistance(vote.R_camera_object)) / width_rad;
-    sum += vote.weight * static_cast<float>(std::exp(-0.5 * ratio * ratio));
-    maximum = std::max(maximum, vote.weight);
+  for (const RotationCandidate& mode : modes) {
+    const double ratio = static_cast<double>(R_camera_object.angularDistance(mode.R_camera_object)) / width_rad;
+    sum += mode.weight * static_cast<float>(std::exp(-0.5 * ratio * ratio));
+    maximum = std::max(maximum, mode.weight);
   }
   return maximum > 0.0F ? std::min(1.0F, sum / maximum) : 0.0F;
 }
@@ -161,15 +173,32 @@ std::vector<PoseCandidate> earlier_candidates(const ObjectObservation& observati
 const ObjectPose* find_continued(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                                  const std::string& class_name, const ObjectPoses& earlier,
                                  const WarmStartSettings& settings) {
-  constexpr int kSpread = 4;  // frames over which classes are searched again
   const double max_turn = settings.max_turn_deg * kRadPerDeg;
+  const ObjectPose* nearest = nullptr;
+  double nearest_m = std::numeric_limits<double>::infinity();
   for (const ObjectPose* pose : earlier_poses(observation, class_name, earlier, settings)) {
-    const int maximum = settings.max_continued + (settings.max_continued > 0 ? pose->class_id % kSpread : 0);
+    const int maximum = max_continued_frames(settings.max_continued, pose->class_id);
     if (pose->quality < settings.sure_quality || pose->continued_frames >= maximum) continue;
     const Eigen::Matrix3d turn = pose->T_camera_object->linear().transpose() * T_camera_object.linear();
-    if (Eigen::AngleAxisd(turn).angle() <= max_turn) return pose;
+    const double distance_m = (pose->T_camera_object->translation() - T_camera_object.translation()).norm();
+    if (Eigen::AngleAxisd(turn).angle() > max_turn || distance_m >= nearest_m) continue;
+    nearest = pose;
+    nearest_m = distance_m;
   }
-  return nullptr;
+  return nearest;
+}
+
+const ObjectPose* find_rejected(const Detection& detection, std::int64_t utime, const ObjectPoses& earlier,
+                                const WarmStartSettings& settings) {
+  if (detection.reported || !is_recent(earlier, utime, settings)) return nullptr;
+  const auto repeats = [&](const ObjectPose& pose) {
+    return pose.rejected_at && pose.class_name == detection.class_name &&
+           pose.quality <= settings.sure_rejection_quality &&
+           pose.continued_frames < max_continued_frames(settings.max_rejected, pose.class_id) &&
+           (detection.centre_camera - *pose.rejected_at).norm() <= settings.rejected_reach_m;
+  };
+  const auto rejected = std::find_if(earlier.poses.begin(), earlier.poses.end(), repeats);
+  return rejected == earlier.poses.end() ? nullptr : &*rejected;
 }
 
 }  // namespace houghstream

@@ -116,9 +116,6 @@ class PoseSelector {
   DepthTolerance tolerance_;
 };
 
-RegistrationResult refine_fully(const PoseSelector& selector, const ObjectObservation& observation,
-                                const RegistrationResult& result, const PoseSelectionSettings& settings);
-
 }  // namespace
 
 RegistrationResult best_registered(const ObjectObservation& observation,
@@ -152,28 +149,23 @@ std::vector<RegistrationResult> select_poses(const ObjectObservation& observatio
     fine.push_back(register_finely(observation, flips[i].result, registration));
   }
   for (RegistrationResult& result : fine)
-    result = refine_fully(selector, observation, selector.turn_to_handle(result), settings);
+    result = refine_rotation(observation, selector.turn_to_handle(result), votes, settings);
   return fine;
+}
+
+RegistrationResult refine_rotation(const ObjectObservation& observation, const RegistrationResult& registered,
+                                   const std::vector<RotationCandidate>& votes, const PoseSelectionSettings& settings) {
+  const RotationSearchSettings& search = settings.rotation_search;
+  const PoseSelector selector(observation, votes, settings);
+  return register_finely(observation, selector.best_rotation(registered, search.fine_step_deg, search.step_deg, 1),
+                         settings.registration);
 }
 
 RegistrationResult refine_pose(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                                const std::vector<RotationCandidate>& votes, const PoseSelectionSettings& settings) {
   RegistrationResult start;
   start.T_camera_object = T_camera_object;
-  const RegistrationResult registered = register_finely(observation, start, settings.registration);
-  return refine_fully(PoseSelector(observation, votes, settings), observation, registered, settings);
+  return refine_rotation(observation, register_finely(observation, start, settings.registration), votes, settings);
 }
-
-namespace {
-
-/// Ends a selection: turns the pose a little to where all cues agree most, and registers it.
-RegistrationResult refine_fully(const PoseSelector& selector, const ObjectObservation& observation,
-                                const RegistrationResult& result, const PoseSelectionSettings& settings) {
-  const RotationSearchSettings& search = settings.rotation_search;
-  return register_finely(observation, selector.best_rotation(result, search.fine_step_deg, search.step_deg, 1),
-                         settings.registration);
-}
-
-}  // namespace
 
 }  // namespace houghstream

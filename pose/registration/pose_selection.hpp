@@ -63,8 +63,12 @@ std::vector<RegistrationResult> select_poses(const ObjectObservation& observatio
                                              const std::vector<RotationCandidate>& votes,
                                              const PoseSelectionSettings& settings);
 
-/// Registers a pose that was found otherwise finely, and turns it a little about its z axis to where depth, colour and
-/// votes agree most, as select_poses() ends.
+/// Turns a finely registered pose a little about its z axis to where depth, colour and votes agree most, and registers
+/// it again, as select_poses() ends.
+RegistrationResult refine_rotation(const ObjectObservation& observation, const RegistrationResult& registered,
+                                   const std::vector<RotationCandidate>& votes, const PoseSelectionSettings& settings);
+
+/// Registers a pose that was found otherwise finely, and refines its rotation.
 RegistrationResult refine_pose(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                                const std::vector<RotationCandidate>& votes, const PoseSelectionSettings& settings);
 

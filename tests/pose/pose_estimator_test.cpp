@@ -324,6 +324,57 @@ TEST(PoseEstimator, ASurePoseIsContinuedWithItsVerdictAndSearchedAnewAfterAWhile
   EXPECT_EQ(continued, (std::vector<int>{0, 1, 2, 3, 0, 1}));
 }
 
+TEST(PoseEstimator, AWeakDetectionIsRejectedAgainForAWhileWhereItStays) {
+  const StandingScene scene(mug(), -0.05, standing(30.0, 30.0, 1.0), 3);
+  Detection wrong = detection_of("box", cereal_box(), scene.truth, 5);
+  wrong.reported = false;
+  wrong.class_id = 4;
+  PoseSettings settings;
+  settings.warm_start.max_rejected = 2;
+  const PoseEstimator estimator = estimator_for("box", cereal_box(), settings);
+  RgbdFrame frame = scene.frame;
+  ObjectPoses earlier;
+  const auto next = [&](const Detection& detection) {
+    frame.id.utime += 33333;
+    Detections seen = only(detection);
+    seen.frame = frame.id;
+    earlier = estimator.estimate(frame, seen, earlier);
+    return earlier.poses.at(0);
+  };
+  const ObjectPose rejected = next(wrong);
+  ASSERT_FALSE(rejected.T_camera_object.has_value());
+  std::vector<int> continued = {rejected.continued_frames};
+  for (int i = 0; i < 4; ++i) {
+    const ObjectPose again = next(wrong);
+    EXPECT_EQ(again.status, rejected.status) << i;
+    continued.push_back(again.continued_frames);
+  }
+  EXPECT_EQ(continued, (std::vector<int>{0, 1, 2, 0, 1}));
+  Detection elsewhere = wrong;
+  elsewhere.centre_camera.x() += 0.1F;
+  EXPECT_EQ(next(elsewhere).continued_frames, 0) << "another object may be there";
+  EXPECT_EQ(next(elsewhere).continued_frames, 1);
+  elsewhere.reported = true;
+  EXPECT_EQ(next(elsewhere).continued_frames, 0) << "who published it wants to know why it is not there";
+}
+
+TEST(PoseEstimator, ADoubtfulRejectionIsNotRepeated) {
+  Detection weak;
+  weak.class_name = "box";
+  weak.centre_camera = {0.0F, 0.0F, 1.0F};
+  weak.reported = false;
+  ObjectPoses earlier;
+  earlier.frame.utime = 1000;
+  earlier.poses.resize(1);
+  earlier.poses[0].class_name = "box";
+  earlier.poses[0].rejected_at = weak.centre_camera;
+  const WarmStartSettings settings;
+  earlier.poses[0].quality = 0.05F;
+  EXPECT_NE(find_rejected(weak, 34333, earlier, settings), nullptr);
+  earlier.poses[0].quality = 0.4F;
+  EXPECT_EQ(find_rejected(weak, 34333, earlier, settings), nullptr);
+}
+
 TEST(PoseEstimator, WhatHasNoTextureIsValidUpToTheSymmetryOfItsShape) {
   const Eigen::Isometry3d truth = standing(30.0, 30.0, 0.8);
   const ObjectPose found = found_from_turned_votes(cereal_box(), truth, coloured_frame(printed_box(), truth, 1));

@@ -332,6 +332,10 @@ def main(parse, targets, network, study):
             importlib.import_module(study).run(options)
     except UnitFailed as error:  # of what the words name
         die(error)
+    except ModuleNotFoundError as error:
+        if error.name != "houghstream":
+            raise
+        die(f"{options.programs}: no Python package houghstream belongs to these programs, expected python/ beside their folder")
     except KeyboardInterrupt:  # while that is read, or programs are built
         die(INTERRUPTED)
 

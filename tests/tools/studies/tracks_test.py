@@ -3,12 +3,16 @@
 import contextlib
 import io
 import math
+import os
 import pathlib
+import subprocess
+import sys
 import tempfile
 import unittest
 
 from houghstream import objects_t, stage_time_t, tracked_object_t
 from houghstream.event_log import write_event
+from studies.command import REPOSITORY
 from studies.tracks import hosts, host_records
 from studies.tracks.__main__ import SEQUENCES, parse
 from studies.tracks.plan import Plan
@@ -106,6 +110,15 @@ class TracksTest(unittest.TestCase):
         write("cans_again", 100, math.nextafter(0.1, 1.0))
         self.assertTrue(tracks_are_equal(Store(), ["walk"]))
         self.assertFalse(tracks_are_equal(Store(), ["walk", "cans"]))
+
+    def test_programs_without_their_messages_are_named(self):
+        with tempfile.TemporaryDirectory() as folder:
+            words = [sys.executable, "-m", "studies.tracks", "--no-stream", "--no-hosts", "--bin", folder, "--out", f"{folder}/out"]
+            environment = {**os.environ, "PYTHONPATH": "tools"}
+            run = subprocess.run(words, cwd=REPOSITORY, env=environment, capture_output=True, text=True, check=False)
+        self.assertEqual(run.returncode, 1)
+        self.assertIn(f"{os.path.realpath(folder)}: no Python package houghstream", run.stderr)
+        self.assertNotIn("Traceback", run.stderr)
 
     def test_options(self):
         options = parse(["--sequences", "cans,walk", "--forest", "f", "--models", "m", "--out", "here"])
