@@ -31,7 +31,8 @@ struct Estimation {
   std::vector<RegistrationResult> selected = {};    ///< the best first
   std::vector<PoseEvidence> evidence = {};          ///< evidence of the selected poses
   std::size_t published = 0;                        ///< index of the selected pose that is published, or would be
-  const ObjectPose* continued = nullptr;            ///< sure pose of an earlier frame that the selected one continues
+  /// Sure pose (WarmStartSettings::sure_quality) of an earlier frame that the selected one continues, or null.
+  const ObjectPose* continued = nullptr;
 };
 
 ObjectPoses undecided_poses(const Detections& detections) {

@@ -54,7 +54,7 @@ class PoseEstimator {
   /// continues a sure pose (find_continued), its alternatives by shape are searched again after some frames only. A
   /// weak detection that was rejected there is rejected again without a search, for some frames (find_rejected).
   /// `remembered` holds the camera's colours learnt from earlier frames (CameraColours::pairs). `known` holds poses of
-  /// this frame that are known otherwise: what they explain is no candidate's.
+  /// this frame that are known otherwise, followed ones for instance: what they explain is no weak detection's.
   ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier,
                        const std::vector<ChromaPair>& remembered = {}, const ObjectPoses& known = {}) const;
 

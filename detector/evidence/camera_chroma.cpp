@@ -131,8 +131,8 @@ bool differ_strongly(const std::vector<ChromaMap>& chroma_maps, const std::vecto
   return false;
 }
 
-/// Sets the chroma maps of the groups' frames. Returns whether views must be searched again, where a
-/// camera is far from them.
+/// Sets the chroma maps of the groups' frames. Returns whether views must be searched again, since the new maps differ
+/// strongly from those that were set before.
 bool set_chroma_maps(GroupChromaMaps chroma_maps, std::vector<LabFrame>& frames) {
   bool differs = false;
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -162,9 +162,8 @@ void rescore(const ScoringInput& input, int threads, std::vector<ScoredHypothesi
     if (score_with_typical_chroma(model, evidence) < kMinScore) return;
     evidence.fit = match_template(forest.views[evidence.view], evidence.view_centre, input.frame);
     candidate.detection.score = score(model, evidence);
-    const float threshold = input.settings.threshold_of(candidate.detection.class_name);
-    const float minimum = std::min(threshold, input.settings.candidates_from);
-    if (candidate.detection.score < minimum) candidate.detection.rotations.clear();
+    if (candidate.detection.score < input.settings.min_kept_score(candidate.detection.class_name))
+      candidate.detection.rotations.clear();
   });
 }
 

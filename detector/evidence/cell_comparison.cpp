@@ -43,8 +43,8 @@ HWY_INLINE V compress(D d, V values, M mask) {
   return hn::TableLookupLanes(values, hn::SetTableIndices(d, kLanesOfSet[bits[0]].data()));
 }
 
-/// Returns a vector of TemplateCells of a row of the box, beginning at a column, in their memory layout. Lanes on the
-/// rim are not valid.
+/// Returns a vector of TemplateCells of a row of the box, beginning at a column, in their memory layout: colour_index
+/// in bits 0 to 15, row in 16 to 23, column from 24 on. Lanes on the rim are not valid.
 HWY_INLINE Ints box_cells(std::size_t row, std::size_t column) {
   const Int d;
   const Ints columns = hn::Iota(d, static_cast<std::int32_t>(column));

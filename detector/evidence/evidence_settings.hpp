@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <string>
 
@@ -9,7 +10,8 @@ namespace houghstream {
 
 /// Limits of what is reported, or handed on as a candidate.
 struct EvidenceSettings {
-  /// Smallest score that is reported. In development_world_20 to 67 95 % of the detections from 0.60 on are true.
+  /// Smallest score that is reported. In the rendered rooms development_world_20 to 67 (hs-render) 95 % of the
+  /// detections from 0.60 on are true.
   float threshold = 0.65F;
   std::map<std::string, float> class_thresholds{};  ///< threshold of one class, by name; of the others: `threshold`
   /// Minimum score of a candidate, a detection for a pose to confirm (Detection::reported); 1 disables candidates.
@@ -37,6 +39,11 @@ struct EvidenceSettings {
   float threshold_of(const std::string& class_name) const {
     const auto known = class_thresholds.find(class_name);
     return known != class_thresholds.end() ? known->second : threshold;
+  }
+
+  /// Returns the smallest score of this class that is reported or handed on as a candidate.
+  float min_kept_score(const std::string& class_name) const {
+    return std::min(threshold_of(class_name), candidates_from);
   }
 };
 

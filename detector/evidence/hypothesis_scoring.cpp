@@ -67,7 +67,7 @@ class HypothesisScorer {
  private:
   void compare_templates(std::size_t count);
   void set_match(const PlacedTemplate& placed, Evidence& evidence) const;
-  const PlacedTemplate* best_compared() const;
+  const PlacedTemplate* best_match_so_far() const;
   SeedTemplates find_seeds();
   BestTemplates<kBestSampled> match_beside_centre() const;
   template <typename Places>
@@ -121,15 +121,15 @@ GroupCandidates score_by_group(const std::vector<GroupHypotheses>& groups, int t
       (scorer.*step)();
     });
   };
+  const TaskIndices all = all_tasks(tasks);
+  for_each(all, &HypothesisScorer::compare);
+  const TaskIndices likely = find_likely(tasks, all);
+  const auto likely_count = static_cast<int>(likely.size());
   const auto search = [&](const TaskIndices& subset, int max_sampled, int max_refined) {
     for_each(choose_sampled(tasks, subset, max_sampled), &HypothesisScorer::compare_sampled_views);
     for_each(choose_refined(tasks, subset, max_refined), &HypothesisScorer::refine);
     for_each(subset, &HypothesisScorer::complete);
   };
-  const TaskIndices all = all_tasks(tasks);
-  for_each(all, &HypothesisScorer::compare);
-  const TaskIndices likely = find_likely(tasks, all);
-  const auto likely_count = static_cast<int>(likely.size());
   search(likely, likely_count, settings.max_refined);
   TaskIndices searched = find_unexplained(tasks, all, likely, settings.explains_from);
   search(searched, settings.max_sampled, std::max(0, settings.max_refined - likely_count));
@@ -221,7 +221,7 @@ void HypothesisScorer::compare() {
   compared_.clear();
   if (forest_.scoring != Scoring::kEvidence) return;
   compare_templates(kTemplatesPerAttitude);
-  if (const PlacedTemplate* best = best_compared()) set_match(*best, scored_.evidence);
+  if (const PlacedTemplate* best = best_match_so_far()) set_match(*best, scored_.evidence);
   detection.score = score(object_.score_model, scored_.evidence);
 }
 
@@ -229,19 +229,19 @@ void HypothesisScorer::compare() {
 /// already: they come first.
 void HypothesisScorer::compare_templates(std::size_t count) {
   const Eigen::Vector3f& centre = hypothesis_.centre_camera;
-  std::size_t place = 0;
+  std::size_t rank = 0;
   for (const auto& [view, weight] : hypothesis_.views) {
-    if (place == count) break;
+    if (rank == count) break;
     if (is_excluded(view)) continue;
-    if (place == compared_.size())
+    if (rank == compared_.size())
       compared_.push_back({view, centre, match_template(views_[view], centre, input_.frame)});
-    ++place;
+    ++rank;
   }
 }
 
 /// Returns the best match of all compared templates, from compare_sampled_views() on with the best sampled one; null
 /// where none was compared.
-const PlacedTemplate* HypothesisScorer::best_compared() const {
+const PlacedTemplate* HypothesisScorer::best_match_so_far() const {
   const PlacedTemplate* best = compared_.empty() ? nullptr : &best_match(compared_);
   if (sampled_best_ && (best == nullptr || matches_better(*sampled_best_, *best))) return &*sampled_best_;
   return best;
@@ -283,7 +283,7 @@ void HypothesisScorer::compare_sampled_views() {
   const BestTemplates<kBestSampled> best = match_sampled_views(std::array{hypothesis_.centre_camera});
   if (best.size() == 0) return;
   sampled_best_ = best.front();
-  set_match(*best_compared(), scored_.evidence);
+  set_match(*best_match_so_far(), scored_.evidence);
   scored_.detection.score = score(object_.score_model, scored_.evidence);
 }
 
@@ -356,14 +356,14 @@ void HypothesisScorer::refine() {
   scored_.detection.score = score(object_.score_model, scored_.evidence);
 }
 
-/// Returns the best matching templates of unlike attitudes, one more than attitudes are searched where these are
+/// Returns the best matching templates of unlike rotations, one more than attitudes are searched where these are
 /// several. They come from the templates that votes support, the sampled ones, and those sampled beside the centre. Of
 /// `compared_` the best are aligned, in place.
 SeedTemplates HypothesisScorer::find_seeds() {
   constexpr float kUnlike_rad = 0.3F;
-  // all compared, the best of them aligned, the best sampled one, and those beside the centre
-  BestTemplates<kTemplatesPerAttitude * kMaxAttitudes + 2 + kBestSampled> all;
-  if (!compared_.empty()) all.add(align_best_templates(views_, input_.frame, compared_));
+  // all compared, the best sampled one, and those beside the centre
+  BestTemplates<kTemplatesPerAttitude * kMaxAttitudes + 1 + kBestSampled> all;
+  if (!compared_.empty()) align_best_templates(views_, input_.frame, compared_);
   for (const PlacedTemplate& placed : compared_) all.add(placed);
   if (sampled_best_) all.add(*sampled_best_);
   for (const PlacedTemplate& placed : match_beside_centre()) all.add(placed);
@@ -384,11 +384,12 @@ SeedTemplates HypothesisScorer::find_seeds() {
 
 /// Returns the templates sampled from all attitudes that match best at places beside the centre, aligned. Where votes
 /// meet beside the middle of the object, as those of plain ones do, the right view matches no better there than others:
-/// on YCB-V a foam brick got scores of 0.14 to 0.22 in three of five images, and 0.9 from 1.5 cm beside.
+/// on YCB-V a foam brick got scores of 0.14 to 0.22 in three of five images, and 0.9 from 1.5 cm beside. None for a
+/// class that was taught in one attitude.
 BestTemplates<kBestSampled> HypothesisScorer::match_beside_centre() const {
   constexpr float kDisplacement = 0.25F;  // fraction of the object's radius
-  constexpr float kSure = 0.9F;           // score from which no other place is tried
-  if (attitude_factor_ == 1.0F || scored_.detection.score >= kSure) return {};
+  constexpr float kEnough = 0.9F;         // score from which no other place is tried
+  if (attitude_factor_ == 1.0F || scored_.detection.score >= kEnough) return {};
   const Eigen::Vector3f& centre = hypothesis_.centre_camera;
   const Eigen::Vector3f right = kDisplacement * object_.radius * Eigen::Vector3f::UnitX();
   const Eigen::Vector3f down = kDisplacement * object_.radius * Eigen::Vector3f::UnitY();
@@ -422,9 +423,9 @@ void HypothesisScorer::complete() {
   detection.box_px = backproject_box(forest_, hypothesis_, input_.patches, camera, workspace_.box);
   if (forest_.scoring == Scoring::kEvidence)
     detection.box_px = visible_box_between(detection.box_px, scored_.evidence.fit.visible_box_px, camera);
-  const float min_score = std::min(input_.settings.threshold_of(object_.name), input_.settings.candidates_from);
+  // Matched again in the camera's colours (camera_chroma), the score may still rise so far.
   const float max_score = std::max(detection.score, score_with_typical_chroma(object_.score_model, scored_.evidence));
-  if (max_score < min_score) return;  // most of them: nothing reads their rotations
+  if (max_score < input_.settings.min_kept_score(object_.name)) return;  // most of them: nothing reads their rotations
   add_rotations(weight_views(), detection.rotations);
 }
 
@@ -478,14 +479,14 @@ TaskIndices find_unexplained(const std::vector<ScoringTask>& tasks, const TaskIn
     const ScoringInput& input = *tasks[i].input;
     return UnoccludedCells(input.index.forest().views[evidence.view], evidence.view_centre, input.frame.frame);
   };
-  std::vector<std::pair<std::size_t, UnoccludedCells>> confident;
+  std::vector<std::pair<std::size_t, UnoccludedCells>> explaining;
   for (const std::size_t i : likely) {
-    if (tasks[i].scored.detection.score >= explains_from) confident.emplace_back(i, cells_of(i));
+    if (tasks[i].scored.detection.score >= explains_from) explaining.emplace_back(i, cells_of(i));
   }
   const auto is_explained = [&](std::size_t i) {
     if (tasks[i].scored.evidence.view == Evidence::kNoView) return false;
     std::optional<UnoccludedCells> cells;
-    return std::any_of(confident.begin(), confident.end(), [&](const auto& other) {
+    return std::any_of(explaining.begin(), explaining.end(), [&](const auto& other) {
       if (!may_touch(tasks[i], tasks[other.first])) return false;
       if (!cells) cells = cells_of(i);
       return cells->fraction_in(other.second) > kExplained;

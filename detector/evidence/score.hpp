@@ -15,7 +15,8 @@ struct Evidence {
   float relative_vote_mass = 0.0F;  ///< vote mass over the class's nominal_vote_mass
   float certainty = 1.0F;           ///< weight of the votes over the number of patches that cast them
   float distance = 1.0F;            ///< distance of the centre from the camera, metres
-  /// Radius of the object at that distance, at about the reference focal length: see focal_octave_scale().
+  /// Radius of the object at that distance, pixels of a camera whose focal length is brought by powers of two nearest
+  /// to the reference (focal_octave_scale).
   float radius_px = 40.0F;
   std::uint32_t view = kNoView;                           ///< index of the best template into Forest::views
   Eigen::Vector3f view_centre = Eigen::Vector3f::Zero();  ///< place of its centre, camera frame, metres

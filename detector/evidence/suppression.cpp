@@ -11,7 +11,7 @@ std::vector<Detection> suppress(std::vector<ScoredHypothesis>& candidates, const
   for (ScoredHypothesis& candidate : candidates) {
     Detection& detection = candidate.detection;
     detection.reported = detection.score >= evidence.threshold_of(detection.class_name);
-    if (detection.reported || detection.score >= evidence.candidates_from) likely.push_back(std::move(detection));
+    if (detection.score >= evidence.min_kept_score(detection.class_name)) likely.push_back(std::move(detection));
   }
   std::vector<Detection> kept = suppress_overlaps(std::move(likely), suppression);
   int candidates_left = evidence.max_candidates;

@@ -264,6 +264,7 @@ void collect_colours(const CellTally& tally, const TemplateGrid& appearance, con
 void apply_chroma_map(const ChromaMap& camera, ColourPairs& pairs) {
   constexpr float kGrey = 128.0F;
   constexpr float kLightness = 100.0F / 255.0F;  // scale from 8-bit L* to 0..100
+  // The gain row by row, then the cast.
   const Eigen::Matrix<float, ChromaMap::kParameters, 1> map = camera.parameters().cast<float>();
   const auto to_byte = [](float value) {
     return static_cast<std::int16_t>(static_cast<std::int32_t>(std::clamp(value + 0.5F, 0.0F, 255.0F)));

@@ -5,7 +5,8 @@
 namespace houghstream {
 
 /// Terms of the logistic regression, as score_terms() computes them from the evidence, or the weights of these terms.
-/// Of all products of two measures the ones listed here reduced the loss most on the development worlds.
+/// Of all products of two measures the ones listed here reduced the loss most in rendered rooms (hs-render, for
+/// development).
 struct ScoreTerms {
   float constant = 0.0F;
   float log_vote_mass = 0.0F;         ///< logarithm of the vote mass over the expected one
@@ -38,7 +39,7 @@ struct ScoreTerms {
   float contrast_colour_correlation = 0.0F;
   float chroma_deficit = 0.0F;  ///< see ColourSimilarity
   // Continuation of the scene across the outline, see BoundaryContinuation.
-  float boundary_continuation = 0.0F;
+  float boundary_continuation = 0.0F;  ///< of surface and colour at once
   float surface_continuation = 0.0F;
   float colour_continuation = 0.0F;
   float boundary_continuation_correlation = 0.0F;  ///< product

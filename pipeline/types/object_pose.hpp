@@ -15,11 +15,11 @@ namespace houghstream {
 
 /// Status of a pose: valid, or the reason why there is none. Values are those of object_pose_t.
 enum class PoseStatus : std::int8_t {
-  kInvalid = 0,
+  kInvalid = 0,  ///< not decided
   kValid = 1,
   kNoModel = 2,            ///< the class has no 3-D model
   kTooFewPoints = 3,       ///< hardly any depth inside the box
-  kNoInitialPose = 4,      ///< the votes carry no rotation
+  kNoInitialPose = 4,      ///< the votes carry no rotation, or the detection no finite centre
   kNotConverged = 5,       ///< no candidate registered
   kRejectedByDepth = 6,    ///< the rendered model contradicts the measured depth
   kLowScore = 7,           ///< hardly an object: its pose was not looked for, or is not believed

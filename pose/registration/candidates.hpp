@@ -12,10 +12,10 @@
 
 namespace houghstream {
 
-/// Rotations from the votes.
+/// Modes of the votes' rotations.
 struct InitialSettings {
   double cluster_radius_deg = 25.0;
-  int clusters = 6;          ///< maximum number of clusters
+  int clusters = 6;          ///< maximum number of modes
   int rotated_clusters = 1;  ///< number of the heaviest that are also turned by quarters about the object's z axis
   float vote_gain = 0.1F;    ///< preference after registration for a rotation that the votes agree on
 };

@@ -23,6 +23,8 @@ ClassGroup group_by_class(const std::string& class_name, const std::vector<PoseO
 
 std::vector<int> assign_poses(const ClassGroup& group, const AssociationSettings& settings) {
   constexpr double kCandidateCost = 0.3;  // extra cost of an unconfirmed track, so that confirmed ones are preferred
+  constexpr double kLimit = 2.0;
+  constexpr double kOutOfReach = 10.0;  // above kLimit: never assigned
   Eigen::MatrixXd costs(group.objects.size(), group.measured.size());
   for (std::size_t i = 0; i < group.objects.size(); ++i) {
     const Track& track = *group.objects[i];
@@ -30,12 +32,11 @@ std::vector<int> assign_poses(const ClassGroup& group, const AssociationSettings
     for (std::size_t j = 0; j < group.measured.size(); ++j) {
       const double distance = track.pose.distance(group.measured[j]->measured, group.symmetries, group.centre);
       const double angle = track.pose.angle(group.measured[j]->measured, group.symmetries);
-      costs(i, j) = distance > reach ? 10.0
+      costs(i, j) = distance > reach ? kOutOfReach
                                      : distance / reach + settings.rotation_cost * angle / M_PI +
                                            (track.id == 0 ? kCandidateCost : 0.0);
     }
   }
-  constexpr double kLimit = 2.0;
   return solve_assignment(costs, kLimit);
 }
 

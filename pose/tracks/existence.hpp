@@ -49,7 +49,7 @@ struct UnobservedContext {
   const std::vector<PoseObservation>& poses;  ///< poses that are new in this result
   const TrackModels& models;
   double reach_m = 0.0;  ///< distance below which a detection of the class is one of the object, metres
-  double coast_s = 0.0;  ///< MotionSettings::coast_s
+  double coast_s = 0.0;  ///< MotionSettings::coast_s: time for which a moving object continues unobserved
 };
 
 /// Evidence that one result gives against an unobserved track: which kinds of it count, and the time by which the
@@ -61,8 +61,8 @@ struct AbsenceEvidence {
 };
 
 /// Updates a track that received no measurement in this frame: lowers the log odds of its existence and deletes it
-/// below the threshold. State and reason change only if this camera observed the object last, or no camera has for 0.1
-/// s.
+/// below the threshold. State and reason change only if it is deleted, this camera observed the object last, or no
+/// camera has for 0.1 s.
 void update_unobserved(const UnobservedContext& context, const AbsenceEvidence& absence,
                        const ExistenceSettings& settings, Track& track);
 

@@ -18,7 +18,7 @@ Tracker::Tracker(TrackModels models, ObjectTrackerSettings settings) : models_(s
   check_settings(settings, "settings of a tracker");
 }
 
-// The method is on one page; its steps follow below in the order of their calls.
+// The method is on one page; its steps follow below, about in the order of their calls.
 std::optional<WorldObjects> Tracker::update(const FrameObservation& received) {
   refused_ = 0;
   CameraClock* camera = begin_frame(received);
@@ -116,7 +116,7 @@ TimeOrder WorldClock::classify_backward_jump(const Camera& camera, const Stamped
   const std::int64_t last_utime = camera.clock.utime;
   if (!is_restarted(camera.number, frame.number)) {
     const auto unconfirmed = unconfirmed_.find(frame.id.channel);
-    const std::int64_t first =
+    const std::int64_t unconfirmed_utime =
         unconfirmed == unconfirmed_.end() ? utime : unconfirmed->second;  // before it is replaced
     if (!confirm_jump(last_utime, frame.id, utime)) return TimeOrder::kLate;
     if (is_sequence_higher(camera.number, frame.number)) {
@@ -125,7 +125,8 @@ TimeOrder WorldClock::classify_backward_jump(const Camera& camera, const Stamped
                       "was set back, and the world goes on",
                       to_string(frame.id), seconds_between(utime, last_utime)));
       // two frame intervals after the camera's last frame: the unconfirmed frame in between was skipped
-      const std::int64_t apart_us = microseconds_between(std::min(first, utime), std::max(first, utime));
+      const std::int64_t apart_us =
+          microseconds_between(std::min(unconfirmed_utime, utime), std::max(unconfirmed_utime, utime));
       set_offset(shifted(last_utime, 2 * std::min<std::int64_t>(apart_us, 1'000'000)), frame.id);
       return TimeOrder::kNext;
     }
@@ -134,6 +135,8 @@ TimeOrder WorldClock::classify_backward_jump(const Camera& camera, const Stamped
   return TimeOrder::kReset;
 }
 
+/// Classifies a result far ahead: it is skipped until it is confirmed; then the world's clock moves on, at most a
+/// minute.
 TimeOrder WorldClock::classify_forward_jump(std::int64_t last_utime, const StampedFrame& frame, std::int64_t utime) {
   constexpr std::int64_t kMaxStep_us = 60'000'000;
   if (seconds_between(last_utime, utime) <= kMaxOvertakenS) return TimeOrder::kNext;
@@ -204,7 +207,7 @@ std::vector<PoseObservation> Tracker::observe_new_poses(const FrameObservation& 
 }
 
 /// Assigns the poses to the objects of their class and updates these; returns the poses without an object near them.
-std::vector<PoseObservation> Tracker::associate(const std::vector<PoseObservation>& poses, double seconds) {
+std::vector<PoseObservation> Tracker::associate(const std::vector<PoseObservation>& poses, double dt_s) {
   std::set<std::string> classes;
   for (const PoseObservation& pose : poses) classes.insert(pose.class_name);
   std::vector<PoseObservation> unassigned;
@@ -215,7 +218,7 @@ std::vector<PoseObservation> Tracker::associate(const std::vector<PoseObservatio
     for (std::size_t i = 0; i < group.objects.size(); ++i) {
       if (assigned[i] < 0) continue;
       is_assigned[assigned[i]] = true;
-      update_track(*group.objects[i], *group.measured[assigned[i]], seconds);
+      update_track(*group.objects[i], *group.measured[assigned[i]], dt_s);
     }
     const int instances =
         static_cast<int>(std::count_if(group.objects.begin(), group.objects.end(),
@@ -230,14 +233,13 @@ std::vector<PoseObservation> Tracker::associate(const std::vector<PoseObservatio
   return unassigned;
 }
 
-void Tracker::update_track(Track& track, const PoseObservation& pose, double seconds) {
+void Tracker::update_track(Track& track, const PoseObservation& pose, double dt_s) {
   constexpr double kReferenceRate_hz = 30.0;
-  constexpr double kMax = 4.0;
-  const double frames_at_30_hz = std::clamp(seconds * kReferenceRate_hz, 0.5, 1.5);
+  const double frames_at_30_hz = std::clamp(dt_s * kReferenceRate_hz, 0.5, 1.5);
   track.pose.update(pose, symmetries_of(models_, track.class_name), track.free_space_violation_s > 0.0);
-  track.log_odds = std::min(
-      settings_.existence.max_log_odds,
-      track.log_odds + frames_at_30_hz * settings_.existence.gain * std::clamp(quality_logit(pose.quality), 0.3, kMax));
+  track.log_odds =
+      std::min(settings_.existence.max_log_odds, track.log_odds + frames_at_30_hz * settings_.existence.gain *
+                                                                      std::max(0.3, quality_logit(pose.quality)));
   ++track.observed_frames;
   track.is_observed = true;
   track.free_space_violation_s = 0.0;
@@ -254,7 +256,7 @@ void Tracker::update_unobserved_tracks(const FrameObservation& observation, cons
   context.reach_m = settings_.association.reach_m;
   context.coast_s = settings_.pose.motion.coast_s;
   const bool is_first_result = camera.results == 1;
-  std::set<std::string> newly_missed;
+  std::set<std::string> newly_missed;  // added at the end: the result counts against every track of a class
   for (Track& track : tracks_) {
     if (!track.is_present() || track.is_observed) continue;
     const bool is_first_to_search = camera.missed.count(track.class_name) == 0 &&
@@ -442,9 +444,9 @@ WorldObjects Tracker::report(const FrameObservation& received, std::int64_t utim
     object.covariance = filter.covariance();
     object.velocity = filter.velocity();
     object.seen = track.observed_frames;
-    object.first_utime = microseconds_between(clock_.offset_us(), track.first_utime);
+    object.first_utime = clock_.to_camera_time(track.first_utime);
     object.last_seen = track.last_seen;
-    object.last_seen.utime = microseconds_between(clock_.offset_us(), track.last_seen.utime);
+    object.last_seen.utime = clock_.to_camera_time(track.last_seen.utime);
     object.reason = track.reason;
     out.objects.push_back(std::move(object));
   }

@@ -51,11 +51,11 @@ struct CameraClock {
   std::set<std::string> missed;   ///< classes that were searched in it, and of which a track was missed
 };
 
-/// Order of a result in time.
+/// Order of a result in time: of the poses of one frame by one detector.
 enum class TimeOrder {
   kNext,  ///< it is of a frame as new as its camera's last one, or newer
   kLate,  ///< it is skipped: its camera's later frames are known, or it is of an earlier run, or its time is wrong
-  kReset  ///< time goes back: a new world begins with it
+  kReset  ///< time goes back: a new world begins with it, in which no object is known and numbers start from 1
 };
 
 /// Frame of a result that has arrived.
@@ -88,6 +88,8 @@ class WorldClock {
 
   /// Returns the world's clock minus the frames' utimes: 0 as long as no clock was set.
   std::int64_t offset_us() const { return offset_us_; }
+  /// Returns the frames' utime of a time on the world's clock.
+  std::int64_t to_camera_time(std::int64_t world_utime) const { return microseconds_between(offset_us_, world_utime); }
 
  private:
   struct Camera {
