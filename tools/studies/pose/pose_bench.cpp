@@ -1,5 +1,7 @@
 #include "tools/studies/pose/pose_bench.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <ctime>
 #include <limits>
 
@@ -21,7 +23,7 @@ PoseRun run_maker(const DetectedScene& detected, const PoseMaker& maker) {
   run.scene = detected.name;
   run.frames = detected.frames;
   for (EvaluatedFrame& frame : run.frames) {
-    TimedPoses made = make_poses(maker, detected.scene.read_frame(frame.image), *frame.detections);
+    TimedPoses made = maker(detected.scene.read_frame(frame.image), *frame.detections);
     frame.poses = std::move(made.poses);
     run.ms.push_back(std::move(made.ms));
   }
@@ -51,7 +53,7 @@ RivalRuns run_baselines(const DetectedScene& detected, const BenchedMakers& make
   const std::vector<std::size_t> visited = visit_within(rules.baselines_s, count, [&](std::size_t i) {
     const EvaluatedFrame& frame = detected.frames[i * every];
     const RgbdFrame image = detected.scene.read_frame(frame.image);
-    for (const auto& [name, maker] : makers.baselines) made[name][i] = make_poses(maker, image, *frame.detections);
+    for (const auto& [name, maker] : makers.baselines) made[name][i] = maker(image, *frame.detections);
   });
   RivalRuns out;
   for (const std::size_t i : visited) out.frames.push_back(i * every);
@@ -72,39 +74,36 @@ RivalRuns run_baselines(const DetectedScene& detected, const BenchedMakers& make
 PoseMaker estimator_maker(const std::map<std::string, Mesh>& models, PoseSettings settings) {
   settings.threads = 1;
   const auto estimator = std::make_shared<const PoseEstimator>(models, settings);
-  return [estimator](const RgbdFrame& frame, const Detection& detection) {
-    Detections one;
-    one.frame = frame.id;
-    one.detections = {detection};
-    return estimator->estimate(frame, one).poses.front();
+  return [estimator](const RgbdFrame& frame, const Detections& detections) {
+    const double start_ms = thread_cpu_ms();
+    TimedPoses out{estimator->estimate(frame, detections), {}};
+    const double frame_ms = thread_cpu_ms() - start_ms;
+    const auto published = std::count_if(out.poses.poses.begin(), out.poses.poses.end(),
+                                         [](const ObjectPose& pose) { return has_pose(pose.status); });
+    out.ms.assign(out.poses.poses.size(), frame_ms / static_cast<double>(std::max<std::ptrdiff_t>(published, 1)));
+    return out;
   };
 }
 
 PoseMaker baseline_maker(std::unique_ptr<BaselineEstimator> baseline) {
   const std::shared_ptr<const BaselineEstimator> shared = std::move(baseline);
-  return [shared](const RgbdFrame& frame, const Detection& detection) {
-    ObjectPose pose;
-    pose.class_id = detection.class_id;
-    pose.class_name = detection.class_name;
-    pose.detection_score = detection.score;
-    pose.residual = std::numeric_limits<float>::quiet_NaN();
-    pose.T_camera_object = shared->estimate(frame, detection);
-    pose.status = pose.T_camera_object ? PoseStatus::kValid : PoseStatus::kNotConverged;
-    return pose;
+  return [shared](const RgbdFrame& frame, const Detections& detections) {
+    TimedPoses out;
+    out.poses.frame = frame.id;
+    for (const Detection& detection : detections.detections) {
+      ObjectPose& pose = out.poses.poses.emplace_back();
+      pose.class_id = detection.class_id;
+      pose.class_name = detection.class_name;
+      pose.detection_score = detection.score;
+      pose.detection_index = static_cast<int>(out.ms.size());
+      pose.residual = std::numeric_limits<float>::quiet_NaN();
+      const double start_ms = thread_cpu_ms();
+      pose.T_camera_object = shared->estimate(frame, detection);
+      out.ms.push_back(thread_cpu_ms() - start_ms);
+      pose.status = pose.T_camera_object ? PoseStatus::kValid : PoseStatus::kNotConverged;
+    }
+    return out;
   };
-}
-
-TimedPoses make_poses(const PoseMaker& maker, const RgbdFrame& frame, const Detections& detections) {
-  TimedPoses out;
-  out.poses.frame = frame.id;
-  for (const Detection& detection : detections.detections) {
-    const double start_ms = thread_cpu_ms();
-    ObjectPose pose = maker(frame, detection);
-    out.ms.push_back(thread_cpu_ms() - start_ms);
-    pose.detection_index = static_cast<int>(out.poses.poses.size());
-    out.poses.poses.push_back(std::move(pose));
-  }
-  return out;
 }
 
 void VariantResult::add(const PoseRun& run, const BopScene& scene, const SceneModels& models, int threads) {

@@ -17,24 +17,24 @@
 
 namespace houghstream {
 
-/// Gives the pose of one detection of a frame, or the reason why there is none, on the calling thread.
-using PoseMaker = std::function<ObjectPose(const RgbdFrame&, const Detection&)>;
-
-/// Makes poses with PoseEstimator on one thread. Models by class name, metres.
-PoseMaker estimator_maker(const std::map<std::string, Mesh>& models, PoseSettings settings);
-
-/// Makes poses with a baseline; a pose that it finds is published, else the status is kNotConverged.
-PoseMaker baseline_maker(std::unique_ptr<BaselineEstimator> baseline);
-
-/// The poses of a frame's detections, in their order, and the CPU time that each took, milliseconds.
+/// The poses of a frame's detections, in their order, and the CPU time that each took, milliseconds: of the calling
+/// thread, which other load of the machine lengthens little.
 struct TimedPoses {
   ObjectPoses poses;
   std::vector<double> ms;
 };
 
-/// Estimates one detection at a time, so that each has its own time. It measures CPU time of the calling thread, which
-/// other load of the machine lengthens little.
-TimedPoses make_poses(const PoseMaker& maker, const RgbdFrame& frame, const Detections& detections);
+/// Gives the poses of a frame's detections, or the reasons why there are none, on the calling thread.
+using PoseMaker = std::function<TimedPoses(const RgbdFrame&, const Detections&)>;
+
+/// Makes poses with PoseEstimator on one thread, of all detections of a frame together, as hs-pose does: some are
+/// judged by others. Each has the frame's time over its published poses, so that what is found to be none is paid for
+/// too. Models by class name, metres.
+PoseMaker estimator_maker(const std::map<std::string, Mesh>& models, PoseSettings settings);
+
+/// Makes poses with a baseline, of one detection after another; a pose that it finds is published, else the status is
+/// kNotConverged.
+PoseMaker baseline_maker(std::unique_ptr<BaselineEstimator> baseline);
 
 /// The makers of poses by name; those of `baselines` are slow and try few frames.
 struct BenchedMakers {

@@ -31,7 +31,7 @@ struct PoseTrial {
   bool symmetric = false;              ///< the object looks the same in other poses
   double visible_fraction = kUnknown;  ///< fraction of the object; known for true detections
   double distance_m = kUnknown;        ///< distance of the object along the optical axis; known for true detections
-  double ms = kUnknown;                ///< CPU time of the pose, or of finding none
+  double ms = kUnknown;                ///< CPU time of the pose, or of finding none (TimedPoses)
   PoseStatus status = PoseStatus::kInvalid;
   float quality = 0.0F;                              ///< ObjectPose::quality; 0 for the baselines
   std::optional<Eigen::Isometry3d> T_camera_object;  ///< metres; present exactly when status is kValid

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tests/pose/test_scene.hpp"
 #include "tools/studies/pose/pose_bench.hpp"
 
 namespace houghstream {
@@ -42,7 +43,7 @@ PoseRun one_frame(const PoseMaker& maker) {
   object.truth.T_camera_object = at(0.0, 2.0);
   frame.objects = {object};
   frame.detections = Detections{{}, {detection(kBox, 0.9F), detection({300, 100, 80, 80}, 0.4F)}, {}};
-  TimedPoses made = make_poses(maker, RgbdFrame{}, *frame.detections);
+  TimedPoses made = maker(RgbdFrame{}, *frame.detections);
   frame.poses = made.poses;
   return {"desk", {frame}, {made.ms}};
 }
@@ -72,6 +73,23 @@ TEST(PoseTrials, ErrorsAreOfTheTrueObjectOrOfTheNearest) {
   EXPECT_NEAR(trials[1].add, 0.05, 1e-6);
   EXPECT_TRUE(std::isnan(trials[1].visible_fraction));
   EXPECT_FALSE(trials[1].is_correct());
+}
+
+TEST(EstimatorMaker, JudgesADetectionByTheOthersOfItsFrameAndSharesTheFramesTimeAmongPublishedPoses) {
+  const Mesh mug = test_scene::mug();
+  const Mesh table = test_scene::table();
+  const Eigen::Isometry3d truth = test_scene::standing(30.0, 30.0, 0.8);
+  const RgbdFrame frame =
+      test_scene::noisy_frame({{&mug, truth, 1}, {&table, truth * Eigen::Translation3d(0, 0, -0.05), 2}}, 3);
+  Detections two;
+  two.frame = frame.id;
+  for (const std::uint64_t seed : {5, 6}) two.detections.push_back(test_scene::detection_of("mug", mug, truth, seed));
+  const TimedPoses made = estimator_maker({{"mug", mug}}, {})(frame, two);
+  ASSERT_EQ(made.poses.poses.size(), 2U);
+  EXPECT_NE(made.poses.poses[0].T_camera_object.has_value(), made.poses.poses[1].T_camera_object.has_value());
+  ASSERT_EQ(made.ms.size(), 2U);
+  EXPECT_GT(made.ms[0], 0.0);
+  EXPECT_EQ(made.ms[0], made.ms[1]);
 }
 
 TEST(PoseTrials, ATurnedPoseIsRightUpToItsShapeOnly) {
