@@ -65,7 +65,6 @@ void repeat_rejection(const ObjectPose& rejected, ObjectPose& pose) {
   ObjectPose repeated = rejected;
   repeated.detection_score = pose.detection_score;
   repeated.detection_index = pose.detection_index;
-  repeated.continued_frames = rejected.continued_frames + 1;
   pose = std::move(repeated);
 }
 
@@ -320,11 +319,10 @@ void withhold_duplicates(const PoseEstimator& estimator, const RgbdFrame& frame,
 }
 
 /// Remembers where weak detections were searched and rejected, for the next frame (find_rejected).
-void note_rejections(const std::vector<Estimation>& estimations) {
+void note_rejections(std::int64_t utime, const std::vector<Estimation>& estimations) {
   for (const Estimation& estimation : estimations) {
-    if (estimation.detection.reported || has_pose(estimation.pose.status)) continue;
-    estimation.pose.rejected_at = estimation.detection.centre_camera;
-    estimation.pose.continued_frames = 0;
+    if (!estimation.detection.reported && !has_pose(estimation.pose.status))
+      estimation.pose.rejected_search = RejectedSearch{estimation.detection.centre_camera, utime};
   }
 }
 
@@ -422,7 +420,7 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
   }
   withhold_duplicates(*this, frame, result.poses);
   if (settings.compare_instances) compare_instances(detections, settings, known, result.poses);
-  note_rejections(estimations);
+  note_rejections(frame.id.utime, estimations);
   clock.mark("pose.print");
 
   result.stages.insert(result.stages.end(), clock.times().begin(), clock.times().end());

@@ -52,7 +52,7 @@ class PoseEstimator {
   /// Estimates with the poses of an earlier frame as a warm start: they are candidates beside those of the votes, never
   /// the only ones, so that a wrong pose does not persist and a lost object is found again. Where the best candidate
   /// continues a sure pose (find_continued), its alternatives by shape are searched again after some frames only. A
-  /// weak detection that was rejected there is rejected again without a search, for some frames (find_rejected).
+  /// weak detection that was rejected there is rejected again without a search, for a while (find_rejected).
   /// `remembered` holds the camera's colours learnt from earlier frames (CameraColours::pairs). `known` holds poses of
   /// this frame that are known otherwise, followed ones for instance: what they explain is no weak detection's.
   ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier,

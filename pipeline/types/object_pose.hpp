@@ -41,6 +41,12 @@ constexpr bool has_pose(PoseStatus status) {
 /// Returns one line per status for logs and reports.
 const char* to_string(PoseStatus status);
 
+/// Where and when the pose of a weak detection (Detection::reported is false) was searched and rejected.
+struct RejectedSearch {
+  Eigen::Vector3f centre_camera = Eigen::Vector3f::Zero();  ///< detected centre, camera frame, metres
+  std::int64_t utime = 0;                                   ///< time of the frame that was searched
+};
+
 /// The pose of one detection with its evidence, or the reason why there is none.
 struct ObjectPose {
   int class_id = 0;
@@ -59,12 +65,12 @@ struct ObjectPose {
   float shape_quality = 0.0F;         ///< the same up to the symmetries of the shape: never below `quality`
   float free_space_violation = 0.0F;  ///< rendered pixels in front of what was measured, 0 to 1
   std::optional<ChromaPair> chroma;   ///< chroma of the model and as measured; not published
-  /// Number of consecutive frames up to this one in which the pose, or its rejection, continued another one without a
-  /// search among its alternatives; not published.
+  /// Number of consecutive frames up to this one in which the pose continued another one without a search among its
+  /// alternatives; not published.
   int continued_frames = 0;
-  /// Detected centre of a weak detection (Detection::reported is false) whose pose was searched and rejected, camera
-  /// frame, metres; not published.
-  std::optional<Eigen::Vector3f> rejected_at;
+  /// Of a weak detection without a pose: the search that its status is of, in this frame or an earlier one; not
+  /// published.
+  std::optional<RejectedSearch> rejected_search;
   ChromaMap camera_colours;  ///< map applied to the model's colours, learnt without it; not published
 };
 

@@ -474,17 +474,19 @@ ObjectPoses ObjectFollower::process_detections(const PoseEstimator& estimator, c
                                                const Detections& detections) {
   DetectionAssociation association;
   std::vector<ChromaPair> remembered;
+  ObjectPoses rejected;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     FollowedCamera& camera = cameras_[detections.frame.channel];
     association = associate_detections(estimator, detections, settings_, camera);
     remembered = camera.colours.pairs();
+    rejected.poses.swap(camera.rejected);
   }
   Detections to_estimate{detections.frame, {}, detections.stages};
   for (std::size_t i = 0; i < detections.detections.size(); ++i) {
     if (association.needs_estimate(i)) to_estimate.detections.push_back(detections.detections[i]);
   }
-  ObjectPoses found = estimator.estimate(frame, to_estimate, {}, remembered, known_poses(association));
+  ObjectPoses found = estimator.estimate(frame, to_estimate, rejected, remembered, known_poses(association));
   ObjectPoses result{detections.frame, {}, found.stages};
   const std::lock_guard<std::mutex> lock(mutex_);
   FollowedCamera& camera = cameras_[detections.frame.channel];
@@ -501,6 +503,8 @@ ObjectPoses ObjectFollower::process_detections(const PoseEstimator& estimator, c
       pose = association.followed_frame.poses[place].pose;
     } else if (pose.T_camera_object) {
       add_object(estimator, frame, pose, camera);
+    } else if (pose.rejected_search) {
+      camera.rejected.push_back(pose);
     }
     pose.detection_index = static_cast<int>(i);
     pose.detection_score = detections.detections[i].score;

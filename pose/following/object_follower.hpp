@@ -102,6 +102,7 @@ struct FollowedCamera {
   std::vector<FollowedObject> objects;
   std::deque<FollowedFrame> recent_frames;  ///< frames that a detector may still answer
   CameraColours colours;                    ///< colours that its objects are judged by
+  std::vector<ObjectPose> rejected;         ///< weak detections rejected in the last detections, see find_rejected()
   bool is_colourless = false;               ///< whether the last frame has no colours
   std::uint64_t depth_digest = 0;           ///< digest of the last frame's depth
   std::int64_t depth_us = 0;                ///< time at which that depth came first, on the camera's clock

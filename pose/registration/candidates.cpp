@@ -12,6 +12,8 @@
 namespace houghstream {
 namespace {
 
+constexpr int kSpread = 4;  // groups of classes that are searched again in different frames
+
 std::vector<RotationVote> select_usable_votes(const std::vector<RotationVote>& votes) {
   std::vector<RotationVote> out;
   for (const RotationVote& vote : votes) {
@@ -86,23 +88,12 @@ PoseCandidate find_best_position(const ObjectObservation& observation, const Eig
   return best;
 }
 
-bool is_recent(const ObjectPoses& earlier, std::int64_t utime, const WarmStartSettings& settings) {
-  const double age_s = seconds_between(earlier.frame.utime, utime);
-  return age_s > 0.0 && age_s <= settings.max_age_s;
-}
-
-/// Returns the maximum number of frames for which a pose or a rejection of a class is continued. Classes differ, so
-/// that not all are searched again in one frame.
-int max_continued_frames(int maximum, int class_id) {
-  constexpr int kSpread = 4;
-  return maximum > 0 ? maximum + class_id % kSpread : 0;
-}
-
 /// Returns the published poses of the class in an earlier frame that lie near the detected centre.
 std::vector<const ObjectPose*> earlier_poses(const ObjectObservation& observation, const std::string& class_name,
                                              const ObjectPoses& earlier, const WarmStartSettings& settings) {
   std::vector<const ObjectPose*> poses;
-  if (!is_recent(earlier, observation.frame.id.utime, settings)) return poses;
+  const double age_s = seconds_between(earlier.frame.utime, observation.frame.id.utime);
+  if (!(age_s > 0.0 && age_s <= settings.max_age_s)) return poses;
   for (const ObjectPose& pose : earlier.poses) {
     if (!pose.T_camera_object || pose.class_name != class_name) continue;
     if (distance_from_detected(observation, *pose.T_camera_object) <= settings.reach_m) poses.push_back(&pose);
@@ -177,7 +168,7 @@ const ObjectPose* find_continued(const ObjectObservation& observation, const Eig
   const ObjectPose* nearest = nullptr;
   double nearest_m = std::numeric_limits<double>::infinity();
   for (const ObjectPose* pose : earlier_poses(observation, class_name, earlier, settings)) {
-    const int maximum = max_continued_frames(settings.max_continued, pose->class_id);
+    const int maximum = settings.max_continued + (settings.max_continued > 0 ? pose->class_id % kSpread : 0);
     if (pose->quality < settings.sure_quality || pose->continued_frames >= maximum) continue;
     const Eigen::Matrix3d turn = pose->T_camera_object->linear().transpose() * T_camera_object.linear();
     const double distance_m = (pose->T_camera_object->translation() - T_camera_object.translation()).norm();
@@ -190,12 +181,13 @@ const ObjectPose* find_continued(const ObjectObservation& observation, const Eig
 
 const ObjectPose* find_rejected(const Detection& detection, std::int64_t utime, const ObjectPoses& earlier,
                                 const WarmStartSettings& settings) {
-  if (detection.reported || !is_recent(earlier, utime, settings)) return nullptr;
+  if (detection.reported) return nullptr;
   const auto repeats = [&](const ObjectPose& pose) {
-    return pose.rejected_at && pose.class_name == detection.class_name &&
-           pose.quality <= settings.sure_rejection_quality &&
-           pose.continued_frames < max_continued_frames(settings.max_rejected, pose.class_id) &&
-           (detection.centre_camera - *pose.rejected_at).norm() <= settings.rejected_reach_m;
+    if (!pose.rejected_search || pose.class_name != detection.class_name) return false;
+    const double age_s = seconds_between(pose.rejected_search->utime, utime);
+    const double max_age_s = settings.max_rejected_s * (1.0 + static_cast<double>(pose.class_id % kSpread) / kSpread);
+    return age_s > 0.0 && age_s <= max_age_s && pose.quality <= settings.sure_rejection_quality &&
+           (detection.centre_camera - pose.rejected_search->centre_camera).norm() <= settings.rejected_reach_m;
   };
   const auto rejected = std::find_if(earlier.poses.begin(), earlier.poses.end(), repeats);
   return rejected == earlier.poses.end() ? nullptr : &*rejected;

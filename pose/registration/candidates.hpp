@@ -65,11 +65,12 @@ struct WarmStartSettings {
   /// Number of consecutive frames for which a pose is continued so, and up to 3 more by class, so that not all objects
   /// are searched again in one frame. 0: each pose is searched anew.
   int max_continued = 8;
-  /// The same for a weak detection (Detection::reported is false) that was rejected with a quality of at most
-  /// sure_rejection_quality: where its class is detected weakly again, its pose is not searched. Chosen: of 1087 weak
-  /// detections that were rejected in a stream of four objects the 1060 with such a quality would have been published
-  /// once in the three frames after it, the 27 others 11 times.
-  int max_rejected = 3;
+  /// A weak detection (Detection::reported is false) that was rejected with a quality of at most sure_rejection_quality
+  /// is rejected again, without a search, for this time, and up to three quarters longer by class, where its class is
+  /// detected weakly again. 0: each is searched. Chosen: of 1050 weak detections that were rejected in a stream of four
+  /// objects the 1024 with such a quality would have been published once in the twelve frames after it (0.4 s), the 26
+  /// others five times.
+  double max_rejected_s = 0.3;
   float sure_rejection_quality = 0.1F;
   double rejected_reach_m = 0.05;  ///< maximum distance between both detected centres
 };
@@ -82,7 +83,7 @@ void fields(const WarmStartSettings& /*settings*/, const Visit& visit) {
   visit(number("sure_quality", &S::sure_quality, 0, 1));
   visit(number("max_turn_deg", &S::max_turn_deg, 0, 180, "degrees"));
   visit(number("max_continued", &S::max_continued, 0, 1000000));
-  visit(number("max_rejected", &S::max_rejected, 0, 1000000));
+  visit(number("max_rejected_s", &S::max_rejected_s, 0, 3600, "s"));
   visit(number("sure_rejection_quality", &S::sure_rejection_quality, 0, 1));
   visit(number("rejected_reach_m", &S::rejected_reach_m, 0, 10, "m"));
 }
@@ -131,8 +132,8 @@ const ObjectPose* find_continued(const ObjectObservation& observation, const Eig
                                  const WarmStartSettings& settings);
 
 /// Returns the rejected weak detection of an earlier frame that a weak one of this frame, taken at `utime`, repeats:
-/// one of its class, surely rejected, detected near the same place, that was not repeated for too long. Null where
-/// there is none, for a reported detection, and where the earlier frame is not earlier or too long before this one.
+/// one of its class, surely rejected, searched near the same place and not too long ago. Null where there is none, and
+/// for a reported detection.
 const ObjectPose* find_rejected(const Detection& detection, std::int64_t utime, const ObjectPoses& earlier,
                                 const WarmStartSettings& settings);
 

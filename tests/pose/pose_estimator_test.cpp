@@ -330,32 +330,29 @@ TEST(PoseEstimator, AWeakDetectionIsRejectedAgainForAWhileWhereItStays) {
   wrong.reported = false;
   wrong.class_id = 4;
   PoseSettings settings;
-  settings.warm_start.max_rejected = 2;
+  settings.warm_start.max_rejected_s = 0.07;
   const PoseEstimator estimator = estimator_for("box", cereal_box(), settings);
   RgbdFrame frame = scene.frame;
   ObjectPoses earlier;
-  const auto next = [&](const Detection& detection) {
+  const auto searched_us_before = [&](const Detection& detection) {
     frame.id.utime += 33333;
     Detections seen = only(detection);
     seen.frame = frame.id;
     earlier = estimator.estimate(frame, seen, earlier);
-    return earlier.poses.at(0);
+    const ObjectPose& pose = earlier.poses.at(0);
+    EXPECT_FALSE(pose.T_camera_object.has_value());
+    EXPECT_NE(pose.status, PoseStatus::kInvalid);
+    return pose.rejected_search ? frame.id.utime - pose.rejected_search->utime : -1;
   };
-  const ObjectPose rejected = next(wrong);
-  ASSERT_FALSE(rejected.T_camera_object.has_value());
-  std::vector<int> continued = {rejected.continued_frames};
-  for (int i = 0; i < 4; ++i) {
-    const ObjectPose again = next(wrong);
-    EXPECT_EQ(again.status, rejected.status) << i;
-    continued.push_back(again.continued_frames);
-  }
-  EXPECT_EQ(continued, (std::vector<int>{0, 1, 2, 0, 1}));
+  std::vector<std::int64_t> before;
+  for (int i = 0; i < 5; ++i) before.push_back(searched_us_before(wrong));
+  EXPECT_EQ(before, (std::vector<std::int64_t>{0, 33333, 66666, 0, 33333}));
   Detection elsewhere = wrong;
   elsewhere.centre_camera.x() += 0.1F;
-  EXPECT_EQ(next(elsewhere).continued_frames, 0) << "another object may be there";
-  EXPECT_EQ(next(elsewhere).continued_frames, 1);
+  EXPECT_EQ(searched_us_before(elsewhere), 0) << "another object may be there";
+  EXPECT_EQ(searched_us_before(elsewhere), 33333);
   elsewhere.reported = true;
-  EXPECT_EQ(next(elsewhere).continued_frames, 0) << "who published it wants to know why it is not there";
+  EXPECT_EQ(searched_us_before(elsewhere), -1) << "who published it wants to know why it is not there";
 }
 
 TEST(PoseEstimator, ADoubtfulRejectionIsNotRepeated) {
@@ -367,7 +364,7 @@ TEST(PoseEstimator, ADoubtfulRejectionIsNotRepeated) {
   earlier.frame.utime = 1000;
   earlier.poses.resize(1);
   earlier.poses[0].class_name = "box";
-  earlier.poses[0].rejected_at = weak.centre_camera;
+  earlier.poses[0].rejected_search = RejectedSearch{weak.centre_camera, 1000};
   const WarmStartSettings settings;
   earlier.poses[0].quality = 0.05F;
   EXPECT_NE(find_rejected(weak, 34333, earlier, settings), nullptr);
