@@ -424,6 +424,26 @@ TEST(ObjectFollower, WeakDetectionsOfWhatIsHalfHiddenSayNothingAgainstIt) {
   }
 }
 
+TEST(ObjectFollower, AWeakDetectionThatWasRejectedIsNotSearchedAtTheNextLook) {
+  Following it(Film().with("mug", mug(), 0.1, 0.05));
+  const Eigen::Isometry3d elsewhere = it.film.truth(0) * Eigen::Translation3d(-0.3, 0.0, 0.0);
+  std::vector<std::int64_t> searched_us_before;
+  for (int i = 0; i < 4; ++i) {
+    it.film.utime += 11 * kPeriod;
+    const RgbdFrame frame = it.film.next();
+    ASSERT_TRUE(it.follower.follow(estimator(), frame).has_value());
+    Detections seen = it.film.detected(frame.id);
+    seen.detections.push_back(detection_of("box", cereal_box(), elsewhere, 7));  // nothing is there
+    seen.detections.back().reported = false;
+    const ObjectPose pose = it.follower.process_detections(estimator(), frame, seen).poses.at(1);
+    ASSERT_FALSE(pose.T_camera_object.has_value()) << i;
+    ASSERT_TRUE(pose.rejected_search.has_value()) << i;
+    searched_us_before.push_back(frame.id.utime - pose.rejected_search->utime);
+  }
+  const std::int64_t apart_us = 12 * kPeriod;
+  EXPECT_EQ(searched_us_before, (std::vector<std::int64_t>{0, apart_us, 0, apart_us}));
+}
+
 TEST(ObjectFollower, CamerasAreApart) {
   Following it(box_and_mug());
   EXPECT_TRUE(it.follower.follow(estimator(), it.film.next("LEFT")).value().poses.empty());
