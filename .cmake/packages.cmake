@@ -30,7 +30,7 @@ measure and mend.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libhoughstream-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "liblcm-dev, libopencv-dev, libturbojpeg0-dev, libdeflate-dev, libbz2-dev, liblz4-dev, libeigen3-dev, libhwy-dev, libassimp-dev, libre2-dev, libyaml-cpp-dev, libspdlog-dev, libfmt-dev, nlohmann-json3-dev, pkg-config")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "liblcm-dev, libopencv-dev, libturbojpeg0-dev, libdeflate-dev, libzstd-dev, libbz2-dev, liblz4-dev, libeigen3-dev, libhwy-dev, libassimp-dev, libre2-dev, libyaml-cpp-dev, libspdlog-dev, libfmt-dev, nlohmann-json3-dev, pkg-config")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "g++, cmake, make")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "finds taught objects in an RGB-D camera's stream: libraries
 Static libraries, headers, message definitions, CMake and pkg-config files,

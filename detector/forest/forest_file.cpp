@@ -14,6 +14,7 @@
 #include "pipeline/base/check_settings.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
+#include "pipeline/base/zstd_bytes.hpp"
 
 namespace houghstream {
 namespace {
@@ -54,15 +55,57 @@ static_assert(sizeof(FeatureSettings) == 68 && sizeof(PatchSettings) == 8 &&
               sizeof(ViewTemplate) == 36 + sizeof(TemplateGrid));
 static_assert(sizeof(TreeNode) == 16 && sizeof(LeafClass) == 8 && sizeof(LeafVote) == 8 && sizeof(LeafView) == 4);
 
+// Lists are compressed by blocks, which bound what is held twice while a file is read. In a block of numbers the first
+// bytes of all items come first, then the second bytes: zstd finds like bytes together, as after Blosc's shuffle.
+constexpr std::size_t kBlockBytes = std::size_t{1} << 19U;
+constexpr int kCompressionLevel = 3;  // measured on seven objects: 6 saves 2 % more and takes three times as long
+constexpr std::size_t kMaxShrinking = 32768;  // chosen: a block of 128 KiB takes zstd four bytes (RFC 8878, 3.1.1.2)
+
+template <typename T>
+constexpr std::size_t kBlockItems = kBlockBytes / sizeof(T);
+
+/// Calls visit(in_item, in_planes) for each byte of a block: its places in the items and in the planes.
+template <typename T, typename Visit>
+void for_each_byte(std::size_t items, const Visit& visit) {
+  constexpr bool kIsNumbers = sizeof(T) <= 16;  // larger ones hold arrays of like bytes already
+  constexpr std::size_t kPlanes = kIsNumbers ? sizeof(T) : 1;
+  for (std::size_t i = 0; i < items * sizeof(T) / kPlanes; ++i) {
+    for (std::size_t plane = 0; plane < kPlanes; ++plane) visit(i * kPlanes + plane, plane * items + i);
+  }
+}
+
+template <typename T>
+std::string to_planes(const T* items, std::size_t count) {
+  std::string planes(count * sizeof(T), '\0');
+  const auto* bytes = reinterpret_cast<const char*>(items);
+  for_each_byte<T>(count, [&](std::size_t in_item, std::size_t in_planes) { planes[in_planes] = bytes[in_item]; });
+  return planes;
+}
+
+template <typename T>
+void from_planes(const std::string& planes, T* items, std::size_t count) {
+  auto* bytes = reinterpret_cast<char*>(items);
+  for_each_byte<T>(count, [&](std::size_t in_item, std::size_t in_planes) { bytes[in_item] = planes[in_planes]; });
+}
+
 struct Writer : ArchiveWriter {
   using ArchiveWriter::operator();
   void operator()(const std::vector<ObjectClass>& classes) {
     (*this)(std::uint64_t{classes.size()});
     for (const ObjectClass& c : classes) archive_class(*this, c);
   }
+  template <typename T>
+  void operator()(const std::vector<T>& values) {
+    (*this)(std::uint64_t{values.size()});
+    for (std::size_t first = 0; first < values.size(); first += kBlockItems<T>) {
+      const std::size_t items = std::min(kBlockItems<T>, values.size() - first);
+      (*this)(compress_zstd(to_planes(values.data() + first, items), kCompressionLevel));
+    }
+  }
 };
 
-struct Reader : ArchiveReader<StreamBytes> {
+/// Reads forest files of version 17, whose lists are not compressed.
+struct ReaderOfVersion17 : ArchiveReader<StreamBytes> {
   using ArchiveReader<StreamBytes>::operator();
   void operator()(std::vector<ObjectClass>& classes) {
     constexpr std::size_t kMin = 4 + 8 + 2 * 4;  // id, the name's length, radius and mass
@@ -71,10 +114,31 @@ struct Reader : ArchiveReader<StreamBytes> {
   }
 };
 
+struct Reader : ReaderOfVersion17 {
+  using ReaderOfVersion17::operator();
+  template <typename T>
+  void operator()(std::vector<T>& values) {
+    std::uint64_t items = 0;
+    take(&items, sizeof items);
+    require(items <= bytes.size() * kMaxShrinking / sizeof(T), "{}: a list of {} items in {} bytes", source, items,
+            bytes.size());
+    values.resize(static_cast<std::size_t>(items));
+    std::string block;
+    std::string planes;
+    for (std::size_t first = 0; first < values.size(); first += kBlockItems<T>) {
+      const std::size_t in_block = std::min(kBlockItems<T>, values.size() - first);
+      (*this)(block);
+      planes.resize(in_block * sizeof(T));
+      decompress_zstd(block, planes.data(), planes.size(), source);
+      from_planes(planes, values.data() + first, in_block);
+    }
+  }
+};
+
 /// Reads what forest files of version 16 hold in another form: templates with all cells, and votes and views of leaves
 /// as floating-point numbers.
-struct ReaderOfVersion16 : Reader {
-  using Reader::operator();
+struct ReaderOfVersion16 : ReaderOfVersion17 {
+  using ReaderOfVersion17::operator();
   struct Template {
     std::uint32_t class_index;
     std::array<float, 4> rotation;
@@ -311,8 +375,7 @@ Forest load_forest(const std::filesystem::path& file) {
   require(line.rfind(kName, 0) == 0, "{}: not a forest file, expected it to begin with '{}{}'", source, kName,
           kForestFileVersion);
   const std::string version = line.substr(sizeof kName - 1);
-  const bool is_of_version_16 = version == "16";
-  require(is_of_version_16 || version == std::to_string(kForestFileVersion),
+  require(version == "16" || version == "17" || version == std::to_string(kForestFileVersion),
           "{}: forest file of version '{}', expected {}: retrain it", source, version, kForestFileVersion);
 
   std::uint64_t size = 0;
@@ -325,9 +388,11 @@ Forest load_forest(const std::filesystem::path& file) {
   require(sum == crc, "{}: checksum {:08x}, expected {:08x}: the file is damaged", source, sum, crc);
 
   Forest forest;
-  const ArchiveReader<StreamBytes> payload{{in, bytes}, source + ": forest payload"};
-  if (is_of_version_16) {
-    read_members(ReaderOfVersion16{{payload}}, forest);
+  const ReaderOfVersion17 payload{{{in, bytes}, source + ": forest payload"}};
+  if (version == "16") {
+    read_members(ReaderOfVersion16{payload}, forest);
+  } else if (version == "17") {
+    read_members(payload, forest);
   } else {
     read_members(Reader{payload}, forest);
   }

@@ -16,6 +16,7 @@
 #include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/messages/codecs.hpp"
+#include "tests/detector/forest/earlier_forest_files.hpp"
 #include "tests/detector/forest/random_forest.hpp"
 #include "tests/drivers/store/small_store.hpp"
 #include "tests/fuzz/fuzz_targets.hpp"
@@ -33,11 +34,11 @@ fs::path scratch(const std::string& name) {
 
 /// The line with the version is followed by u64 length, u32 CRC-32 and payload.
 void repair_forest(Bytes& input) {
-  constexpr std::string_view kBefore = "HOUGHSTREAM FOREST 16\n";  // is read too
-  const bool is_before =
-      std::string_view(reinterpret_cast<const char*>(input.data()), input.size()).substr(0, kBefore.size()) == kBefore;
-  const std::string line =
-      is_before ? std::string(kBefore) : fmt::format("HOUGHSTREAM FOREST {}\n", kForestFileVersion);
+  const std::string_view text(reinterpret_cast<const char*>(input.data()), input.size());
+  std::string line = fmt::format("HOUGHSTREAM FOREST {}\n", kForestFileVersion);
+  for (const char* earlier : {"HOUGHSTREAM FOREST 16\n", "HOUGHSTREAM FOREST 17\n"}) {  // are read too
+    if (text.substr(0, line.size()) == earlier) line = earlier;
+  }
   const std::size_t payload = line.size() + 12;
   if (input.size() < payload) return;
   std::copy(line.begin(), line.end(), input.begin());
@@ -73,16 +74,10 @@ std::vector<Bytes> forests() {
   forest.leaf_classes = {entry, entry};
   const std::string file = as_file({}, "seed_forest");
   save_forest(forest, file);
-  // In version 16 each entry of a leaf begins with two indices. The entries are followed by two empty lists.
-  Bytes before = content_of(file);
-  const auto entries = before.end() - 2 * sizeof(std::uint64_t) - 2 * sizeof(LeafClass);
-  const Bytes indices(2 * sizeof(std::uint32_t));
-  const auto first = before.insert(entries, indices.begin(), indices.end());
-  before.insert(first + static_cast<std::ptrdiff_t>(indices.size() + sizeof(LeafClass)), indices.begin(),
-                indices.end());
-  before[std::string_view("HOUGHSTREAM FOREST 1").size()] = '6';
-  repair_forest(before);
-  return {content_of(file), before};
+  std::vector<Bytes> files{content_of(file)};
+  for (const std::string& earlier : {forest_file_of_version_16(forest), forest_file_of_version_17(forest)})
+    files.emplace_back(earlier.begin(), earlier.end());
+  return files;
 }
 
 /// Writes text files of a folder, which bytes 0 divide.

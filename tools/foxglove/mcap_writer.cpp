@@ -1,7 +1,6 @@
 #include "tools/foxglove/mcap_writer.hpp"
 
 #include <zlib.h>
-#include <zstd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -9,6 +8,7 @@
 #include <limits>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/zstd_bytes.hpp"
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "numbers are written as they lie in memory");
 
@@ -68,14 +68,6 @@ std::uint32_t add_to_checksum(std::uint32_t checksum, std::string_view bytes) {
       crc32_z(checksum, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<z_size_t>(bytes.size())));
 }
 
-std::string zstd_compressed(const std::string& bytes) {
-  std::string out(ZSTD_compressBound(bytes.size()), '\0');
-  const std::size_t size = ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), kCompressionLevel);
-  require(ZSTD_isError(size) == 0, "zstd: {}", ZSTD_getErrorName(size));
-  out.resize(size);
-  return out;
-}
-
 }  // namespace
 
 McapWriter::McapWriter(const std::filesystem::path& file)
@@ -124,7 +116,7 @@ void McapWriter::put(std::string_view bytes) {
 
 void McapWriter::write_chunk() {
   if (chunk_.empty()) return;
-  const std::string compressed = zstd_compressed(chunk_);
+  const std::string compressed = compress_zstd(chunk_, kCompressionLevel);
   WrittenChunk chunk;
   chunk.start_time = chunk_start_;
   chunk.end_time = chunk_end_;

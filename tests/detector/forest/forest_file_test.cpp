@@ -11,8 +11,8 @@
 
 #include "detector/features/feature_families.hpp"
 #include "detector/training/forest_trainer.hpp"
-#include "pipeline/base/archive.hpp"
 #include "pipeline/base/checks.hpp"
+#include "tests/detector/forest/earlier_forest_files.hpp"
 #include "tests/detector/toy_data.hpp"
 #include "tests/expect_says.hpp"
 #include "tests/test_files.hpp"
@@ -71,78 +71,18 @@ TEST_F(ForestFile, ComesBackWhole) {
   EXPECT_TRUE(again.str() == whole);
 }
 
-/// Returns a forest as files of version 16 hold it.
-std::string as_version_16(const Forest& forest) {
-  ArchiveWriter payload;
-  payload(forest.profile);
-  payload(forest.features);
-  payload(forest.patch);
-  payload(forest.scoring);
-  payload(forest.seed);
-  payload(std::uint64_t{forest.classes.size()});
-  for (const ObjectClass& object : forest.classes) {
-    payload(object.class_id);
-    payload(object.name);
-    payload(object.radius);
-    payload(object.nominal_vote_mass);
-    for (const auto term : kScoreTermList) payload(object.score_model.weights.*term);
+TEST_F(ForestFile, TheVersionsBeforeAreReadAsTheSameForest) {
+  for (const std::string& before : {forest_file_of_version_16(forest), forest_file_of_version_17(forest)}) {
+    rewrite(before);
+    save_forest(load_forest(file), file);
+    std::ostringstream again;
+    again << std::ifstream(file, std::ios::binary).rdbuf();
+    EXPECT_TRUE(again.str() == whole) << before.substr(0, before.find('\n'));
   }
-  payload(std::uint64_t{forest.views.size()});
-  for (const ViewTemplate& view : forest.views) {
-    payload(view.class_index);
-    payload(view.R_ray_object);
-    payload(view.box);
-    const auto for_each_cell = [](const auto& visit) {
-      for (int row = 0; row < TemplateGrid::kSide; ++row) {
-        for (int column = 0; column < TemplateGrid::kSide; ++column) visit(row, column);
-      }
-    };
-    const TemplateGrid& grid = view.appearance;
-    for_each_cell([&](int row, int column) { payload(grid.depth_mm(row, column)); });
-    for_each_cell([&](int row, int column) {
-      const auto cell = static_cast<std::size_t>(row * TemplateGrid::kSide + column);
-      payload(row < TemplateGrid::kRimRows ? grid.beside[cell] : TemplateGrid::kNoObject);
-    });
-    for_each_cell([&](int row, int column) {
-      const bool is_in_box = TemplateGrid::is_in_box(row) && TemplateGrid::is_in_box(column);
-      payload(is_in_box ? grid.lab[TemplateGrid::colour_index(row, column)] : std::array<std::uint8_t, 3>{});
-    });
-    payload(find_outline(grid).crossings);
-  }
-  payload(forest.roots);
-  payload(forest.nodes);
-  payload(forest.leaves);
-  payload(forest.leaf_weights);
-  payload(std::uint64_t{forest.leaf_classes.size()});
-  LeafStart start;
-  for (const LeafClass& entry : forest.leaf_classes) {
-    payload(start);
-    payload(entry);
-    start.pass(entry);
-  }
-  payload(std::uint64_t{forest.votes.size()});
-  for (const LeafVote& vote : forest.votes) {
-    const Eigen::Vector3f offset = vote.offset();
-    for (int i = 0; i < 3; ++i) payload(offset[i]);
-    payload(vote.weight.value());
-  }
-  payload(std::uint64_t{forest.leaf_views.size()});
-  for (const LeafView& view : forest.leaf_views) {
-    payload(std::uint32_t{view.view});
-    payload(view.weight.value());
-  }
-  ArchiveWriter header;
-  header(std::uint64_t{payload.bytes.size()});
-  header(std::uint32_t{libdeflate_crc32(0, payload.bytes.data(), payload.bytes.size())});
-  return "HOUGHSTREAM FOREST 16\n" + header.bytes + payload.bytes;
 }
 
-TEST_F(ForestFile, TheVersionBeforeIsReadAsTheSameForest) {
-  rewrite(as_version_16(forest));
-  save_forest(load_forest(file), file);
-  std::ostringstream again;
-  again << std::ifstream(file, std::ios::binary).rdbuf();
-  EXPECT_TRUE(again.str() == whole);
+TEST_F(ForestFile, IsSmallerThanTheVersionBefore) {
+  EXPECT_LT(whole.size(), forest_file_of_version_17(forest).size() * 3 / 4);
 }
 
 /// Returns the bytes with a number at a place, and the checksum that goes with it.
@@ -155,15 +95,15 @@ std::string changed(std::string bytes, std::size_t at, Number number) {
   return bytes;
 }
 
-TEST_F(ForestFile, AnEntryOutOfItsPlaceIsRefusedInTheVersionBefore) {
-  const std::string whole_before = as_version_16(forest);
+TEST_F(ForestFile, AnEntryOutOfItsPlaceIsRefusedInVersion16) {
+  const std::string whole_before = forest_file_of_version_16(forest);
   const std::size_t behind = 8 + forest.votes.size() * 16 + 8 + forest.leaf_views.size() * 8;
   const std::size_t last_entry = whole_before.size() - behind - 16;
   expect_says(error_for(changed(whole_before, last_entry, std::uint32_t{0})), {"an entry of a leaf begins at vote 0"});
 }
 
-TEST_F(ForestFile, AVoteThatIsNoNumberIsRefusedInTheVersionBefore) {
-  const std::string whole_before = as_version_16(forest);
+TEST_F(ForestFile, AVoteThatIsNoNumberIsRefusedInVersion16) {
+  const std::string whole_before = forest_file_of_version_16(forest);
   const std::size_t last_weight = whole_before.size() - 8 - forest.leaf_views.size() * 8 - 4;
   const float nan = std::numeric_limits<float>::quiet_NaN();
   expect_says(error_for(changed(whole_before, last_weight, nan)), {"a vote of weight nan"});
@@ -195,6 +135,20 @@ TEST_F(ForestFile, ADamagedByteIsNoticed) {
   std::string damaged = whole;
   damaged[damaged.size() / 2] ^= 1;
   EXPECT_NE(error_for(damaged).find("checksum"), std::string::npos);
+}
+
+TEST_F(ForestFile, ABlockThatIsNoZstdIsRefused) {
+  // The file ends with the last block of the leaves' views, and a frame of zstd begins with its magic number.
+  const std::size_t frame = whole.rfind("\x28\xb5\x2f\xfd");
+  ASSERT_NE(frame, std::string::npos);
+  expect_says(error_for(changed(whole, frame, std::uint32_t{0})), {"forest payload cannot be decompressed"});
+}
+
+TEST_F(ForestFile, AListThatItsBlocksCannotHoldIsRefused) {
+  const std::size_t last_list = whole.rfind("\x28\xb5\x2f\xfd") - 2 * sizeof(std::uint64_t);
+  expect_says(error_for(changed(whole, last_list, std::uint64_t{1} << 60U)), {"a list of 1152921504606846976 items"});
+  const auto fewer = static_cast<std::uint64_t>(forest.leaf_views.size() - 1);
+  expect_says(error_for(changed(whole, last_list, fewer)), {"decompresse"});
 }
 
 TEST_F(ForestFile, AnIndexThatPointsNowhereIsRefused) {
