@@ -7,9 +7,9 @@
 namespace houghstream {
 
 /// The forest file: the line "HOUGHSTREAM FOREST <version>", then little-endian: payload size (u64), CRC-32 of the
-/// payload (u32), payload. The payload holds the feature and patch settings, the classes and all arrays, compressed with
-/// zstd. Files of version 17, which are not compressed, and of version 16, whose leaves had votes and views in twice the
-/// bytes, are read too.
+/// payload (u32), payload. The payload holds the feature and patch settings, the classes and all arrays, compressed
+/// with zstd. Files of version 17, which are not compressed, and of version 16, whose leaves had votes and views in
+/// twice the bytes, are read too.
 constexpr int kForestFileVersion = 18;
 
 /// Writes a new file beside `file` and renames it, so that a good forest is never half overwritten.
